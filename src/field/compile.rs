@@ -1,0 +1,311 @@
+//! Compiles fields into one linear program of column operations.
+//!
+//! Equal expressions of one domain share their columns. A field that is evaluated elsewhere
+//! ([`Field::at`]) opens a new domain, whose position is three columns of the old one. Columns get
+//! slots by liveness, so a program needs as many buffers as are alive at once.
+
+use super::{Field, Kernel, Operation, Sampling};
+use crate::key::{Key, KeyHasher};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A linear list of column operations that gives the columns of some fields.
+#[derive(Debug)]
+pub struct Program {
+    pub(super) steps: Vec<Step>,
+    pub(super) slots: usize,
+    /// Slots that hold one number throughout, with that number.
+    pub(super) constants: Vec<(usize, f32)>,
+    pub(super) outputs: Vec<Vec<usize>>,
+    pub(super) margin: usize,
+    pub(super) key: Key,
+}
+
+/// One operation of a program. Columns are slot numbers.
+#[derive(Debug)]
+pub(super) enum Step {
+    /// The change of a column from sample to sample.
+    Spread { of: usize, along: [usize; 2] },
+    /// A kernel.
+    Kernel(Box<KernelStep>),
+}
+
+/// A kernel with its columns.
+#[derive(Debug)]
+pub(super) struct KernelStep {
+    pub(super) kernel: Arc<dyn Kernel>,
+    pub(super) node: Arc<str>,
+    pub(super) key: Key,
+    pub(super) inputs: Vec<usize>,
+    /// For every input the slots of its spread, if the kernel reads it.
+    pub(super) spreads: Vec<Option<[usize; 2]>>,
+    pub(super) outputs: Vec<usize>,
+    /// Gives the outputs inside single pixels, where the kernel cannot filter.
+    pub(super) within: Option<Program>,
+    /// How many samples beyond the tile the outputs are read.
+    pub(super) margin: usize,
+}
+
+/// Slots 0 to 2 hold the position of the samples.
+pub(super) const POSITION: [usize; 3] = [0, 1, 2];
+
+impl Program {
+    /// Compiles a program whose outputs are the columns of `fields`, in order.
+    pub fn compile(fields: &[Field]) -> Program {
+        Compiler::new(true).compile(fields)
+    }
+
+    /// How many samples beyond a tile have to be evaluated with it.
+    pub fn margin(&self) -> usize {
+        self.margin
+    }
+
+    /// Number of column buffers in use at once.
+    pub fn buffers(&self) -> usize {
+        self.slots
+    }
+
+    /// Number of operations.
+    pub fn length(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Identifies the program: two with the same key do the same.
+    pub fn key(&self) -> Key {
+        self.key
+    }
+}
+
+/// A place where positions come from: the samples themselves, or three columns of another domain.
+struct Place {
+    key: Key,
+    position: [usize; 3],
+    /// The domain this one was opened in, and the field that moves the points.
+    outer: Option<(usize, Field)>,
+}
+
+struct Compiler {
+    supersampling: bool,
+    places: Vec<Place>,
+    place_of: HashMap<(usize, Key), usize>,
+    columns_of: HashMap<(Key, usize), Vec<usize>>,
+    spread_of: HashMap<usize, [usize; 2]>,
+    constant_of: HashMap<u32, usize>,
+    constants: Vec<(usize, f32)>,
+    steps: Vec<Step>,
+    columns: usize,
+}
+
+impl Compiler {
+    fn new(supersampling: bool) -> Compiler {
+        let root = Place {
+            key: KeyHasher::new("root", 1).finish(),
+            position: POSITION,
+            outer: None,
+        };
+        Compiler {
+            supersampling,
+            places: vec![root],
+            place_of: HashMap::new(),
+            columns_of: HashMap::new(),
+            spread_of: HashMap::new(),
+            constant_of: HashMap::new(),
+            constants: Vec::new(),
+            steps: Vec::new(),
+            columns: POSITION.len(),
+        }
+    }
+
+    fn compile(mut self, fields: &[Field]) -> Program {
+        let mut key = KeyHasher::new("program", 1);
+        key.whole(i64::from(self.supersampling));
+        let outputs: Vec<Vec<usize>> = fields
+            .iter()
+            .map(|field| {
+                key.key(field.key());
+                self.columns(field)
+            })
+            .collect();
+        let margin = assign_margins(&mut self.steps, self.columns);
+        let program = Program {
+            steps: self.steps,
+            slots: self.columns,
+            constants: self.constants,
+            outputs,
+            margin,
+            key: key.finish(),
+        };
+        super::slots::assign(program)
+    }
+
+    /// The columns of a field in the root place, with everything it depends on.
+    fn columns(&mut self, field: &Field) -> Vec<usize> {
+        // A loop instead of recursion: recipes may chain a hundred thousand nodes.
+        let mut pending = vec![(field.clone(), 0)];
+        while let Some((field, place)) = pending.last().cloned() {
+            if self.columns_of.contains_key(&(field.key(), place)) {
+                pending.pop();
+                continue;
+            }
+            let missing = self.missing(&field, place);
+            if missing.is_empty() {
+                let columns = self.emit(&field, place);
+                self.columns_of.insert((field.key(), place), columns);
+                pending.pop();
+            } else {
+                pending.extend(missing);
+            }
+        }
+        self.columns_of[&(field.key(), 0)].clone()
+    }
+
+    /// The dependencies of a field that have no columns yet.
+    fn missing(&mut self, field: &Field, place: usize) -> Vec<(Field, usize)> {
+        let wanted = match &field.0.operation {
+            Operation::Constant(_) | Operation::Position => vec![],
+            Operation::Part { of, .. } => vec![(of.clone(), place)],
+            Operation::Kernel { inputs, .. } => {
+                inputs.iter().map(|input| (input.clone(), place)).collect()
+            }
+            Operation::At { field, position } => match self.inner_place(place, position) {
+                Some(inner) => vec![(field.clone(), inner)],
+                None => vec![(position.clone(), place)],
+            },
+        };
+        let unknown = |wanted: &(Field, usize)| {
+            !self.columns_of.contains_key(&(wanted.0.key(), wanted.1))
+        };
+        wanted.into_iter().filter(unknown).collect()
+    }
+
+    /// The place that `position` opens inside `place`, once the columns of `position` are known.
+    fn inner_place(&mut self, place: usize, position: &Field) -> Option<usize> {
+        if let Some(known) = self.place_of.get(&(place, position.key())) {
+            return Some(*known);
+        }
+        let columns = self.columns_of.get(&(position.key(), place))?;
+        let position_columns = [columns[0], columns[1], columns[2]];
+        let key =
+            KeyHasher::new("place", 1).key(self.places[place].key).key(position.key()).finish();
+        self.places.push(Place {
+            key,
+            position: position_columns,
+            outer: Some((place, position.clone())),
+        });
+        let inner = self.places.len() - 1;
+        self.place_of.insert((place, position.key()), inner);
+        Some(inner)
+    }
+
+    /// Emits the step of a field whose dependencies have columns; gives its columns.
+    fn emit(&mut self, field: &Field, place: usize) -> Vec<usize> {
+        match &field.0.operation {
+            Operation::Constant(values) => {
+                values.iter().map(|value| self.constant(*value)).collect()
+            }
+            Operation::Position => self.places[place].position.to_vec(),
+            Operation::Part { of, first } => {
+                self.columns_of[&(of.key(), place)][*first..*first + field.width()].to_vec()
+            }
+            Operation::At { field, position } => {
+                let inner = self.place_of[&(place, position.key())];
+                self.columns_of[&(field.key(), inner)].clone()
+            }
+            Operation::Kernel { kernel, inputs, node } => {
+                let columns = inputs
+                    .iter()
+                    .flat_map(|input| self.columns_of[&(input.key(), place)].clone())
+                    .collect();
+                self.emit_kernel(field, place, Arc::clone(kernel), Arc::clone(node), columns)
+            }
+        }
+    }
+
+    fn emit_kernel(
+        &mut self,
+        field: &Field,
+        place: usize,
+        kernel: Arc<dyn Kernel>,
+        node: Arc<str>,
+        inputs: Vec<usize>,
+    ) -> Vec<usize> {
+        let spreads = inputs
+            .iter()
+            .enumerate()
+            .map(|(column, of)| kernel.reads_spread(column).then(|| self.spread(*of)))
+            .collect();
+        let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
+        let within = (self.supersampling && kernel.sampling() != Sampling::Filtered)
+            .then(|| Compiler::new(false).compile(&[self.from_root(field, place)]));
+        let key = KeyHasher::new("step", 1).key(field.key()).key(self.places[place].key).finish();
+        let step = KernelStep {
+            kernel,
+            node,
+            key,
+            inputs,
+            spreads,
+            outputs: outputs.clone(),
+            within,
+            margin: 0,
+        };
+        self.steps.push(Step::Kernel(Box::new(step)));
+        outputs
+    }
+
+    /// The field as seen from the samples' own positions.
+    fn from_root(&self, field: &Field, mut place: usize) -> Field {
+        let mut field = field.clone();
+        while let Some((outer, position)) = &self.places[place].outer {
+            field = field.at(position);
+            place = *outer;
+        }
+        field
+    }
+
+    fn spread(&mut self, of: usize) -> [usize; 2] {
+        if let Some(known) = self.spread_of.get(&of) {
+            return *known;
+        }
+        let along = [self.new_column(), self.new_column()];
+        self.steps.push(Step::Spread { of, along });
+        self.spread_of.insert(of, along);
+        along
+    }
+
+    fn constant(&mut self, value: f32) -> usize {
+        if let Some(known) = self.constant_of.get(&value.to_bits()) {
+            return *known;
+        }
+        let column = self.new_column();
+        self.constant_of.insert(value.to_bits(), column);
+        self.constants.push((column, value));
+        column
+    }
+
+    fn new_column(&mut self) -> usize {
+        self.columns += 1;
+        self.columns - 1
+    }
+}
+
+/// Finds how far beyond the tile every column is read; gives the largest distance.
+fn assign_margins(steps: &mut [Step], columns: usize) -> usize {
+    let mut margins = vec![0; columns];
+    for step in steps.iter_mut().rev() {
+        match step {
+            Step::Spread { of, along } => {
+                let distance = margins[along[0]].max(margins[along[1]]) + 1;
+                margins[*of] = margins[*of].max(distance);
+            }
+            Step::Kernel(step) => {
+                step.margin = step.outputs.iter().map(|column| margins[*column]).max().unwrap_or(0);
+                // Whether an input bends is seen by looking at its neighbours.
+                let distance = step.margin + usize::from(step.within.is_some());
+                let spreads = step.spreads.iter().flatten().flatten();
+                spreads.for_each(|column| margins[*column] = margins[*column].max(step.margin));
+                step.inputs.iter().for_each(|column| margins[*column] = margins[*column].max(distance));
+            }
+        }
+    }
+    margins.into_iter().max().unwrap_or(0)
+}

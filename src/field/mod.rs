@@ -1,0 +1,168 @@
+//! Fields: values defined at every point, held as nodes of an expression graph.
+//!
+//! A [`Field`] is neither a closure nor an image. It is an expression that [`Program`] compiles,
+//! together with all the other fields of an output, into one linear list of column operations.
+//! Two fields with the same [`Field::key`] have the same values, so they are computed once.
+
+mod compile;
+mod kernel;
+mod run;
+mod samples;
+mod slots;
+mod spread;
+mod supersample;
+
+pub use compile::Program;
+pub use kernel::{Block, InputColumn, Kernel, Sampling};
+pub use run::{ColumnCache, Columns, RunContext, Scratch};
+pub use samples::{PixelGrid, Samples, Target};
+
+use crate::key::{Key, KeyHasher};
+use crate::value::Domain;
+use std::sync::Arc;
+
+/// A number (one column), a vector or a colour (three columns) for every point of a domain.
+#[derive(Clone, Debug)]
+pub struct Field(Arc<Expression>);
+
+/// One node of the expression graph.
+#[derive(Debug)]
+struct Expression {
+    key: Key,
+    width: usize,
+    domain: Domain,
+    operation: Operation,
+}
+
+/// How an expression gets its columns.
+#[derive(Debug)]
+enum Operation {
+    /// The same values everywhere.
+    Constant(Vec<f32>),
+    /// The position of the sample in its domain, in mm.
+    Position,
+    /// Some columns of a wider field.
+    Part { of: Field, first: usize },
+    /// A kernel over the columns of other fields.
+    Kernel { kernel: Arc<dyn Kernel>, inputs: Vec<Field>, node: Arc<str> },
+    /// A field of another domain, evaluated where `position` points.
+    At { field: Field, position: Field },
+}
+
+impl Field {
+    /// The same number everywhere.
+    pub fn constant(number: f64) -> Field {
+        Field::constants(&[number])
+    }
+
+    /// The same vector or colour everywhere.
+    pub fn constants(numbers: &[f64]) -> Field {
+        let values: Vec<f32> = numbers.iter().map(|number| *number as f32 + 0.0).collect();
+        let mut key = KeyHasher::new("constant", 1);
+        values.iter().for_each(|value| {
+            key.number(f64::from(*value));
+        });
+        Field::new(key.finish(), values.len(), Domain::Everywhere, Operation::Constant(values))
+    }
+
+    /// The position of the sample in mm: (x, y, z) in a solid, (u, v, 0) on a plane.
+    pub fn position(domain: Domain) -> Field {
+        let key = KeyHasher::new("position", 1).text(&domain.to_string()).finish();
+        Field::new(key, 3, domain, Operation::Position)
+    }
+
+    /// The columns that `kernel` computes from `inputs`, on behalf of the node called `node`.
+    ///
+    /// The field is defined where its inputs are; inputs of different domains are a fault of the caller
+    /// that checking the recipe has ruled out.
+    pub fn kernel(node: &Arc<str>, kernel: Arc<dyn Kernel>, inputs: Vec<Field>) -> Field {
+        let mut key = KeyHasher::new("kernel", 1);
+        kernel.add_to_key(&mut key);
+        inputs.iter().for_each(|input| {
+            key.key(input.key());
+        });
+        let domain = inputs
+            .iter()
+            .map(Field::domain)
+            .find(|domain| *domain != Domain::Everywhere)
+            .unwrap_or(Domain::Everywhere);
+        let width = kernel.width();
+        let node = Arc::clone(node);
+        Field::new(key.finish(), width, domain, Operation::Kernel { kernel, inputs, node })
+    }
+
+    /// Columns `first .. first + width` of this field.
+    pub fn part(&self, first: usize, width: usize) -> Field {
+        if first == 0 && width == self.width() {
+            return self.clone();
+        }
+        let key = KeyHasher::new("part", 1)
+            .key(self.key())
+            .whole(first as i64)
+            .whole(width as i64)
+            .finish();
+        Field::new(key, width, self.domain(), Operation::Part { of: self.clone(), first })
+    }
+
+    /// This field where `position` points: the way from a plane into the solid it cuts.
+    pub fn at(&self, position: &Field) -> Field {
+        if self.domain() == Domain::Everywhere {
+            return self.clone();
+        }
+        let key = KeyHasher::new("at", 1).key(self.key()).key(position.key()).finish();
+        let operation = Operation::At { field: self.clone(), position: position.clone() };
+        Field::new(key, self.width(), position.domain(), operation)
+    }
+
+    /// The hash that identifies the field's values.
+    pub fn key(&self) -> Key {
+        self.0.key
+    }
+
+    /// Number of columns: 1 for numbers, 3 for vectors and colours.
+    pub fn width(&self) -> usize {
+        self.0.width
+    }
+
+    /// Where the field is defined.
+    pub fn domain(&self) -> Domain {
+        self.0.domain
+    }
+
+    /// The values, if they are the same everywhere.
+    pub fn as_constant(&self) -> Option<&[f32]> {
+        match &self.0.operation {
+            Operation::Constant(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    fn new(key: Key, width: usize, domain: Domain, operation: Operation) -> Field {
+        Field(Arc::new(Expression { key, width, domain, operation }))
+    }
+}
+
+impl Operation {
+    /// Moves the fields this operation depends on into `fields`.
+    fn release_into(&mut self, fields: &mut Vec<Field>) {
+        match std::mem::replace(self, Operation::Position) {
+            Operation::Constant(_) | Operation::Position => {}
+            Operation::Part { of, .. } => fields.push(of),
+            Operation::Kernel { inputs, .. } => fields.extend(inputs),
+            Operation::At { field, position } => fields.extend([field, position]),
+        }
+    }
+}
+
+impl Drop for Expression {
+    /// Releases long chains in a loop: the default would recurse once for every link.
+    fn drop(&mut self) {
+        let mut pending = Vec::new();
+        self.operation.release_into(&mut pending);
+        while let Some(Field(shared)) = pending.pop() {
+            if let Ok(mut expression) = Arc::try_unwrap(shared) {
+                expression.operation.release_into(&mut pending);
+            }
+        }
+    }
+}

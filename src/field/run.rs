@@ -1,0 +1,233 @@
+//! Runs a program over one block of samples.
+
+use super::compile::{KernelStep, POSITION, Program, Step};
+use super::{Block, InputColumn, Samples, spread, supersample};
+use crate::key::{Key, KeyHasher};
+use fearless_simd::Level;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Samples per vector, at most: columns are padded to a multiple of it.
+const PADDING: usize = 16;
+
+/// A kernel dearer than this many nanoseconds a sample is worth keeping columns of.
+const DEAR: f32 = 4.0;
+
+/// The columns of one kernel for one block of samples.
+pub type Columns = Arc<[Vec<f32>]>;
+
+/// Keeps columns of expensive kernels between runs.
+pub trait ColumnCache: Send + Sync {
+    /// The columns stored under `key`.
+    fn get(&self, key: &Key) -> Option<Columns>;
+
+    /// Stores columns that took about `nanoseconds` to compute.
+    fn put(&self, key: Key, columns: Columns, nanoseconds: f64);
+}
+
+/// What a run needs besides the program and the samples.
+#[derive(Clone, Copy)]
+pub struct RunContext<'a> {
+    /// The vector instructions to use; results do not depend on it.
+    pub level: Level,
+    /// Where columns of expensive kernels are kept, if anywhere.
+    pub cache: Option<&'a dyn ColumnCache>,
+    /// Whether kernels see the spread of their inputs and are supersampled where they bend.
+    /// Switched off only to show what filtering is good for.
+    pub filtering: bool,
+}
+
+/// What the nodes did for one block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// A kernel of the node ran.
+    pub computed: bool,
+    /// Columns of the node came from the cache.
+    pub reused: bool,
+}
+
+/// The buffers of a thread that runs programs; kept between runs.
+#[derive(Default)]
+pub struct Scratch {
+    slots: Vec<Vec<f32>>,
+    filled: Option<(Key, usize)>,
+    /// The buffers for supersampling.
+    pub(super) within: Option<Box<Scratch>>,
+    work: BTreeMap<Arc<str>, Work>,
+}
+
+impl Scratch {
+    /// The column in slot `slot`.
+    pub(super) fn column(&self, slot: usize) -> &[f32] {
+        &self.slots[slot]
+    }
+
+    /// What every node did since the last call.
+    pub fn take_work(&mut self) -> BTreeMap<Arc<str>, Work> {
+        std::mem::take(&mut self.work)
+    }
+
+    pub(super) fn note(&mut self, node: &Arc<str>, work: Work) {
+        let entry = self.work.entry(Arc::clone(node)).or_default();
+        entry.computed |= work.computed;
+        entry.reused |= work.reused;
+    }
+
+    /// Prepares the buffers for a program over `padded` samples.
+    fn prepare(&mut self, program: &Program, samples: &Samples<'_>, padded: usize) {
+        if self.filled != Some((program.key, padded)) {
+            self.slots.resize_with(self.slots.len().max(program.slots), Vec::new);
+            for (slot, value) in &program.constants {
+                self.slots[*slot].clear();
+                self.slots[*slot].resize(padded, *value);
+            }
+            self.filled = Some((program.key, padded));
+        }
+        let mut position = POSITION.map(|slot| std::mem::take(&mut self.slots[slot]));
+        samples.write_positions(&mut position, padded);
+        for (slot, column) in POSITION.into_iter().zip(position) {
+            self.slots[slot] = column;
+        }
+    }
+}
+
+impl Program {
+    /// Evaluates the program at `samples`; the results are read with [`Program::output`].
+    pub fn run(&self, samples: &Samples<'_>, scratch: &mut Scratch, context: &RunContext<'_>) {
+        let padded = samples.len().next_multiple_of(PADDING);
+        scratch.prepare(self, samples, padded);
+        let stored = self.stored(samples, context);
+        let needed = self.needed(&stored);
+        for ((step, stored), needed) in self.steps.iter().zip(&stored).zip(needed) {
+            match (step, stored) {
+                _ if !needed => {}
+                (Step::Spread { of, along }, _) => {
+                    write_spread(scratch, samples, context, *of, *along);
+                }
+                (Step::Kernel(step), Stored::Columns(columns)) => load(scratch, step, columns),
+                (Step::Kernel(step), Stored::Under(key)) => {
+                    compute(scratch, step, samples, context, padded);
+                    store(scratch, step, *key, context, padded);
+                }
+                (Step::Kernel(step), Stored::Nowhere) => {
+                    compute(scratch, step, samples, context, padded);
+                }
+            }
+        }
+    }
+
+    /// Column `column` of output `output` after a run; longer than the samples by some padding.
+    pub fn output<'a>(&self, scratch: &'a Scratch, output: usize, column: usize) -> &'a [f32] {
+        scratch.column(self.outputs[output][column])
+    }
+
+    /// Looks up the columns that a cache may hold.
+    fn stored(&self, samples: &Samples<'_>, context: &RunContext<'_>) -> Vec<Stored> {
+        let Some(cache) = context.cache else {
+            return self.steps.iter().map(|_| Stored::Nowhere).collect();
+        };
+        let samples_key = samples.key();
+        let look_up = |step: &Step| match step {
+            Step::Kernel(step) if step.kernel.nanoseconds() >= DEAR => {
+                let key = KeyHasher::new("columns", 1).key(step.key).key(samples_key).finish();
+                cache.get(&key).map_or(Stored::Under(key), Stored::Columns)
+            }
+            _ => Stored::Nowhere,
+        };
+        self.steps.iter().map(look_up).collect()
+    }
+
+    /// Which steps have to run, given what is stored.
+    fn needed(&self, stored: &[Stored]) -> Vec<bool> {
+        let mut wanted = vec![false; self.slots];
+        self.outputs.iter().flatten().for_each(|slot| wanted[*slot] = true);
+        let mut needed = vec![false; self.steps.len()];
+        for (index, step) in self.steps.iter().enumerate().rev() {
+            let writes = step.writes();
+            needed[index] = writes.iter().any(|slot| wanted[*slot]);
+            if !needed[index] {
+                continue;
+            }
+            // Before this step its slots belong to other columns.
+            writes.iter().for_each(|slot| wanted[*slot] = false);
+            if !matches!(stored[index], Stored::Columns(_)) {
+                step.reads().iter().for_each(|slot| wanted[*slot] = true);
+            }
+        }
+        needed
+    }
+}
+
+/// What the cache has of a step.
+enum Stored {
+    Nowhere,
+    /// Nothing yet; this is the key to store it under.
+    Under(Key),
+    Columns(Columns),
+}
+
+fn write_spread(
+    scratch: &mut Scratch,
+    samples: &Samples<'_>,
+    context: &RunContext<'_>,
+    of: usize,
+    along: [usize; 2],
+) {
+    let mut columns = along.map(|slot| std::mem::take(&mut scratch.slots[slot]));
+    let shape = if context.filtering { samples.shape() } else { [1, 1] };
+    spread::write_spread(&scratch.slots[of], shape, &mut columns);
+    for (slot, column) in along.into_iter().zip(columns) {
+        scratch.slots[slot] = column;
+    }
+}
+
+fn compute(
+    scratch: &mut Scratch,
+    step: &KernelStep,
+    samples: &Samples<'_>,
+    context: &RunContext<'_>,
+    padded: usize,
+) {
+    let mut outputs: Vec<Vec<f32>> =
+        step.outputs.iter().map(|slot| std::mem::take(&mut scratch.slots[*slot])).collect();
+    outputs.iter_mut().for_each(|column| column.resize(padded, 0.0));
+    let inputs: Vec<InputColumn<'_>> = step
+        .inputs
+        .iter()
+        .zip(&step.spreads)
+        .map(|(slot, spread)| InputColumn {
+            values: &scratch.slots[*slot],
+            spread: spread.map_or([&[], &[]], |along| along.map(|slot| &scratch.slots[slot][..])),
+        })
+        .collect();
+    let mut block = Block { level: context.level, inputs: &inputs, outputs: &mut outputs };
+    step.kernel.evaluate(&mut block);
+    scratch.note(&step.node, Work { computed: true, reused: false });
+    if let (Some(within), true) = (&step.within, context.filtering) {
+        supersample::supersample(scratch, step, within, samples, context, &mut outputs);
+    }
+    for (slot, column) in step.outputs.iter().zip(outputs) {
+        scratch.slots[*slot] = column;
+    }
+}
+
+fn load(scratch: &mut Scratch, step: &KernelStep, columns: &Columns) {
+    for (slot, column) in step.outputs.iter().zip(columns.iter()) {
+        scratch.slots[*slot].clear();
+        scratch.slots[*slot].extend_from_slice(column);
+    }
+    scratch.note(&step.node, Work { computed: false, reused: true });
+}
+
+fn store(
+    scratch: &Scratch,
+    step: &KernelStep,
+    key: Key,
+    context: &RunContext<'_>,
+    padded: usize,
+) {
+    let columns: Columns = step.outputs.iter().map(|slot| scratch.slots[*slot].clone()).collect();
+    if let Some(cache) = context.cache {
+        cache.put(key, columns, f64::from(step.kernel.nanoseconds()) * padded as f64);
+    }
+}

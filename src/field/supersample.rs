@@ -1,0 +1,77 @@
+//! Supersampling: where a kernel cannot filter, the smallest program that gives its outputs is run
+//! on a fixed grid inside the sample, and the results are averaged.
+
+use super::compile::{KernelStep, Program};
+use super::run::{RunContext, Scratch};
+use super::{PixelGrid, Samples, Sampling, spread};
+
+/// Samples along each side of a supersampled pixel.
+const SIDE: usize = 4;
+
+/// Pixels that are supersampled in one go: their samples are a block of some thousand.
+const PIXELS_AT_ONCE: usize = 128;
+
+/// Replaces the outputs of `step` in the pixels where it does not filter well.
+pub(super) fn supersample(
+    scratch: &mut Scratch,
+    step: &KernelStep,
+    within: &Program,
+    samples: &Samples<'_>,
+    context: &RunContext<'_>,
+    outputs: &mut [Vec<f32>],
+) {
+    let Samples::Grid { target, grid } = samples else { return };
+    let pixels = pixels_to_supersample(scratch, step, grid);
+    if pixels.is_empty() {
+        return;
+    }
+    let mut inner = scratch.within.take().unwrap_or_default();
+    for pixels in pixels.chunks(PIXELS_AT_ONCE) {
+        let grid = grid.within_pixels(pixels, SIDE, within.margin());
+        let area = grid.width * grid.height;
+        within.run(&Samples::Grid { target: *target, grid }, &mut inner, context);
+        for (column, output) in outputs.iter_mut().enumerate() {
+            let values = within.output(&inner, 0, column);
+            for (values, pixel) in values.chunks_exact(area).zip(pixels) {
+                output[*pixel as usize] = mean_inside(values, within.margin());
+            }
+        }
+    }
+    for (node, work) in inner.take_work() {
+        scratch.note(&node, work);
+    }
+    scratch.within = Some(inner);
+}
+
+/// Indices of the samples where the kernel needs help, in order. Only samples that somebody reads and
+/// whose neighbours are known are looked at, so the answer does not depend on the tile.
+fn pixels_to_supersample(scratch: &Scratch, step: &KernelStep, grid: &PixelGrid) -> Vec<u32> {
+    let border = grid.margin.saturating_sub(step.margin).max(1);
+    let inside = (border..grid.height.saturating_sub(border))
+        .flat_map(|y| (border..grid.width - border).map(move |x| y * grid.width + x));
+    match step.kernel.sampling() {
+        Sampling::Filtered => vec![],
+        Sampling::Supersampled => {
+            let varies = |index: &usize| step.inputs.iter().any(|slot| {
+                spread::size(scratch.column(*slot), grid.width, *index) > 0.0
+            });
+            inside.filter(varies).map(|index| index as u32).collect()
+        }
+        Sampling::FilteredWhereStraight { column, absolute, relative } => {
+            let values = scratch.column(step.inputs[column]);
+            let bends = |index: &usize| {
+                spread::bend(values, grid.width, *index)
+                    > absolute + relative * spread::size(values, grid.width, *index)
+            };
+            inside.filter(bends).map(|index| index as u32).collect()
+        }
+    }
+}
+
+/// The mean of a pixel's samples without their margin, added up in a fixed order.
+fn mean_inside(values: &[f32], margin: usize) -> f32 {
+    let width = SIDE + 2 * margin;
+    let rows = values.chunks_exact(width).skip(margin).take(SIDE);
+    let sum: f32 = rows.flat_map(|row| &row[margin..margin + SIDE]).sum();
+    sum / (SIDE * SIDE) as f32
+}

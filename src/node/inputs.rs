@@ -1,0 +1,167 @@
+//! What a build function receives: checked inputs by name, and how it reports that it cannot go on.
+
+use super::Kind;
+use crate::field::{Field, Kernel};
+use crate::value::{ColourPattern, Domain, FileContents, Material, Skeleton, Value};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// The inputs of one node, checked against its kind: absent optional ones are missing, defaults filled in.
+///
+/// The typed readers take the names that the kind declares. Asking for a name or a type that the kind
+/// does not declare is a mistake in the node's file, found by the test that builds every kind's example.
+#[derive(Debug)]
+pub struct Inputs<'a> {
+    kind: &'static Kind,
+    values: &'a [Option<Value>],
+}
+
+/// Why a node could not be built, in terms of the recipe.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// What is wrong, in lower case and without a full stop.
+    pub message: String,
+    /// The input to blame, if it is one.
+    pub input: Option<&'static str>,
+    /// What to do.
+    pub hint: Option<String>,
+}
+
+impl Failure {
+    /// A failure that no single input causes.
+    pub fn new(message: impl Into<String>) -> Failure {
+        Failure { message: message.into(), input: None, hint: None }
+    }
+
+    /// A failure caused by input `input`.
+    pub fn of_input(input: &'static str, message: impl Into<String>) -> Failure {
+        Failure { message: message.into(), input: Some(input), hint: None }
+    }
+
+    /// Adds what to do.
+    pub fn with_hint(mut self, hint: impl Into<String>) -> Failure {
+        self.hint = Some(hint.into());
+        self
+    }
+}
+
+/// What surrounds a node that is being built.
+#[derive(Debug)]
+pub struct Build<'a> {
+    /// The node's name, under which its kernels report what they did.
+    pub node: &'a Arc<str>,
+    /// The seed of the recipe.
+    pub seed: u64,
+}
+
+impl Build<'_> {
+    /// The columns that `kernel` computes from `inputs`.
+    pub fn kernel(&self, kernel: impl Kernel + 'static, inputs: Vec<Field>) -> Field {
+        Field::kernel(self.node, Arc::new(kernel), inputs)
+    }
+}
+
+macro_rules! readers {
+    ($($(#[$doc:meta])* $reader:ident, $pattern:pat => $result:expr, $type:ty;)*) => {
+        $(
+            $(#[$doc])*
+            pub fn $reader(&self, name: &str) -> $type {
+                match self.required(name) {
+                    $pattern => $result,
+                    other => self.mistake(name, other),
+                }
+            }
+        )*
+    };
+}
+
+impl<'a> Inputs<'a> {
+    /// Pairs the values with the kind that declares them.
+    pub fn new(kind: &'static Kind, values: &'a [Option<Value>]) -> Inputs<'a> {
+        Inputs { kind, values }
+    }
+
+    /// The value of an input, unless the recipe left it out.
+    pub fn get(&self, name: &str) -> Option<&'a Value> {
+        let Some((index, _)) = self.kind.input(name) else {
+            panic!("kind `{}` declares no input `{name}`", self.kind.name)
+        };
+        self.values[index].as_ref()
+    }
+
+    readers! {
+        /// A constant number, in the unit that the input declares.
+        number, Value::Number(number) => *number, f64;
+        /// A whole number.
+        whole, Value::Whole(number) => *number, i64;
+        /// A toggle.
+        toggle, Value::Toggle(toggle) => *toggle, bool;
+        /// The chosen name.
+        choice, Value::Choice(name) => name, &'static str;
+        /// Text.
+        text, Value::Text(text) => text, &'a str;
+        /// A file with its contents.
+        file, Value::File(file) => file, &'a FileContents;
+        /// A constant linear colour.
+        colour, Value::Colour(colour) => *colour, [f64; 3];
+        /// A constant vector.
+        vector, Value::Vector(vector) => *vector, DVec3;
+        /// A pair of numbers.
+        pair, Value::Pair(pair) => *pair, [f64; 2];
+        /// The items of a list.
+        list, Value::List(items) => items, &'a [Value];
+        /// Names of channels.
+        names, Value::Names(names) => names, &'a [String];
+        /// Named values.
+        channels, Value::Channels(channels) => channels, &'a [(String, Value)];
+        /// A skeleton.
+        skeleton, Value::Skeleton(skeleton) => skeleton, &'a Arc<Skeleton>;
+        /// A colour pattern.
+        colour_pattern, Value::ColourPattern(pattern) => pattern, &'a Arc<ColourPattern>;
+        /// A material.
+        material, Value::Material(material) => material, &'a Arc<Material>;
+    }
+
+    /// A per-point input as a field, whether the recipe gave a literal or a link.
+    pub fn field(&self, name: &str) -> Field {
+        let value = self.required(name);
+        field_of(value).unwrap_or_else(|| self.mistake(name, value))
+    }
+
+    /// A per-point input as a field, unless the recipe left it out.
+    pub fn optional_field(&self, name: &str) -> Option<Field> {
+        self.get(name).map(|_| self.field(name))
+    }
+
+    fn required(&self, name: &str) -> &'a Value {
+        self.get(name).unwrap_or_else(|| {
+            panic!("input `{name}` of kind `{}` has no value: declare a default", self.kind.name)
+        })
+    }
+
+    fn mistake(&self, name: &str, found: &Value) -> ! {
+        let found = found.type_name();
+        panic!("input `{name}` of kind `{}` holds a {found}: use another reader", self.kind.name)
+    }
+}
+
+/// A number, vector or colour as a field.
+pub(crate) fn field_of(value: &Value) -> Option<Field> {
+    match value {
+        Value::Number(number) => Some(Field::constant(*number)),
+        Value::Whole(number) => Some(Field::constant(*number as f64)),
+        Value::Colour(colour) => Some(Field::constants(colour)),
+        Value::Vector(vector) => Some(Field::constants(&vector.to_array())),
+        Value::Field(field) => Some(field.clone()),
+        _ => None,
+    }
+}
+
+/// The domain that fields share; `Everywhere` if all are constant.
+pub fn common_domain<'f>(fields: impl IntoIterator<Item = &'f Field>) -> Domain {
+    fields
+        .into_iter()
+        .map(Field::domain)
+        .find(|domain| *domain != Domain::Everywhere)
+        .unwrap_or(Domain::Everywhere)
+}

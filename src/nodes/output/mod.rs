@@ -1,0 +1,1 @@
+//! Where a recipe ends: what is written.

@@ -1,0 +1,3 @@
+//! Surfaces: what a material is made of, and how it is cut.
+
+pub mod material;

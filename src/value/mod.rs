@@ -1,0 +1,138 @@
+//! What flows on links: literals, structures, fields, materials and requests for maps.
+
+mod colour_pattern;
+mod material;
+mod skeleton;
+mod types;
+
+pub use colour_pattern::{AfterEnd, ColourPattern};
+pub use material::{Maps, MapFormat, Material};
+pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
+pub use types::{Domain, Type, Unit};
+
+use crate::field::Field;
+use crate::key::KeyHasher;
+use glam::DVec3;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A file that a recipe names, as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileContents {
+    /// The path as the recipe writes it.
+    pub path: PathBuf,
+    /// What the file held when it was read.
+    pub bytes: Arc<[u8]>,
+}
+
+/// A value: what an input receives and an output gives.
+#[derive(Clone, Debug)]
+pub enum Value {
+    /// A number in the unit of its input.
+    Number(f64),
+    /// A whole number.
+    Whole(i64),
+    /// True or false.
+    Toggle(bool),
+    /// The chosen name.
+    Choice(&'static str),
+    /// Text.
+    Text(String),
+    /// A file with its contents.
+    File(FileContents),
+    /// A linear Rec. 709 colour.
+    Colour([f64; 3]),
+    /// Three numbers.
+    Vector(DVec3),
+    /// Two numbers.
+    Pair([f64; 2]),
+    /// Values of one type.
+    List(Vec<Value>),
+    /// Named parts in the order of the type; absent optional parts are missing.
+    Record(Vec<(&'static str, Value)>),
+    /// Names of channels.
+    Names(Vec<String>),
+    /// Named values.
+    Channels(Vec<(String, Value)>),
+    /// A value for every point: a number, a vector or a colour.
+    Field(Field),
+    /// Trunk and branches.
+    Skeleton(Arc<Skeleton>),
+    /// Colour as a function of growth time.
+    ColourPattern(Arc<ColourPattern>),
+    /// A bundle of fields.
+    Material(Arc<Material>),
+    /// Maps to be written.
+    Maps(Arc<Maps>),
+}
+
+impl Value {
+    /// Adds the literal's canonical bytes to a key; values that have keys of their own add nothing.
+    pub fn add_to_key(&self, key: &mut KeyHasher) {
+        match self {
+            Value::Number(number) => key.text("number").number(*number),
+            Value::Whole(number) => key.text("whole").whole(*number),
+            Value::Toggle(toggle) => key.text("toggle").whole(i64::from(*toggle)),
+            Value::Choice(name) => key.text("choice").text(name),
+            Value::Text(text) => key.text("text").text(text),
+            Value::File(file) => key.text("file").bytes(&file.bytes),
+            Value::Colour(colour) => {
+                colour.iter().fold(key.text("colour"), |key, part| key.number(*part))
+            }
+            Value::Vector(vector) => vector
+                .to_array()
+                .iter()
+                .fold(key.text("vector"), |key, part| key.number(*part)),
+            Value::Pair(pair) => pair.iter().fold(key.text("pair"), |key, part| key.number(*part)),
+            Value::Names(names) => {
+                key.text("names").whole(names.len() as i64);
+                names.iter().fold(key, |key, name| key.text(name))
+            }
+            Value::List(items) => {
+                key.text("list").whole(items.len() as i64);
+                items.iter().for_each(|item| item.add_to_key(key));
+                key
+            }
+            Value::Record(parts) => {
+                key.text("record").whole(parts.len() as i64);
+                for (name, part) in parts {
+                    part.add_to_key(key.text(name));
+                }
+                key
+            }
+            Value::Channels(parts) => {
+                key.text("channels").whole(parts.len() as i64);
+                for (name, part) in parts {
+                    part.add_to_key(key.text(name));
+                }
+                key
+            }
+            Value::Field(field) => key.text("field").key(field.key()),
+            Value::Skeleton(_) | Value::ColourPattern(_) | Value::Material(_) | Value::Maps(_) => key,
+        };
+    }
+
+    /// The name of the value's type in messages.
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Value::Number(_) => "number",
+            Value::Whole(_) => "whole number",
+            Value::Toggle(_) => "toggle",
+            Value::Choice(_) => "choice",
+            Value::Text(_) => "text",
+            Value::File(_) => "file",
+            Value::Colour(_) => "colour",
+            Value::Vector(_) => "vector",
+            Value::Pair(_) => "pair",
+            Value::List(_) => "list",
+            Value::Record(_) => "record",
+            Value::Names(_) => "names",
+            Value::Channels(_) => "map",
+            Value::Field(_) => "field",
+            Value::Skeleton(_) => "skeleton",
+            Value::ColourPattern(_) => "colour pattern",
+            Value::Material(_) => "material",
+            Value::Maps(_) => "maps",
+        }
+    }
+}
