@@ -1,0 +1,285 @@
+//! Builds nodes in parallel, each as soon as the ones it reads are there.
+
+use super::event::{Event, From, Listener};
+use super::memory::{Memory, Structure};
+use super::plan::Plan;
+use super::store::Store;
+use super::{Cancel, RunError, arithmetic, content};
+use crate::diagnostics::{Code, Diagnostic};
+use crate::field::Field;
+use crate::graph::{Binding, Link, Node, Source};
+use crate::key::{Key, KeyHasher};
+use crate::node::{Build, Failure, Inputs, field_of};
+use crate::value::Value;
+use petgraph::Direction;
+use petgraph::graph::NodeIndex;
+use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// What surrounds the building of nodes.
+pub(super) struct Builder<'a> {
+    pub(super) memory: &'a Memory,
+    pub(super) store: Option<&'a Store>,
+    pub(super) listener: &'a dyn Listener,
+    pub(super) cancel: &'a Cancel,
+}
+
+/// The built nodes of a plan.
+pub(super) struct Built {
+    cells: HashMap<NodeIndex, Cell>,
+}
+
+struct Cell {
+    /// Nodes that it reads and that are not there yet.
+    waiting: AtomicUsize,
+    result: OnceLock<Option<Structure>>,
+}
+
+impl Built {
+    /// The values of a node, in the order of its outputs.
+    pub(super) fn values(&self, node: NodeIndex) -> &[Value] {
+        &self.structure(node).expect("every node of a finished plan is built").values
+    }
+
+    /// The content key of one output of a node.
+    pub(super) fn key(&self, node: NodeIndex, output: usize) -> Key {
+        self.structure(node).expect("every node of a finished plan is built").keys[output]
+    }
+
+    fn structure(&self, node: NodeIndex) -> Option<&Structure> {
+        self.cells.get(&node)?.result.get()?.as_ref()
+    }
+}
+
+impl Builder<'_> {
+    /// Builds every node of the plan.
+    ///
+    /// # Errors
+    /// What is wrong with each node that could not be built; nodes that read it are left out.
+    pub(super) fn build(&self, plan: &Plan<'_>) -> Result<Built, RunError> {
+        let built = Built { cells: plan.order.iter().map(|node| (*node, Cell::new(plan, *node))).collect() };
+        let failures = OnceLockList::default();
+        rayon::scope(|scope| {
+            for node in &plan.order {
+                if plan.graph.nodes.neighbors_directed(*node, Direction::Incoming).next().is_none() {
+                    scope.spawn(|scope| self.run(plan, &built, &failures, *node, scope));
+                }
+            }
+        });
+        if self.cancel.is_cancelled() {
+            return Err(RunError::Cancelled);
+        }
+        let mut failures = failures.0.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        failures.sort_by_key(|failure| failure.label.as_ref().map(|label| label.span.start));
+        if failures.is_empty() { Ok(built) } else { Err(RunError::Nodes(failures)) }
+    }
+
+    fn run<'s>(
+        &'s self,
+        plan: &'s Plan<'_>,
+        built: &'s Built,
+        failures: &'s OnceLockList,
+        index: NodeIndex,
+        scope: &rayon::Scope<'s>,
+    ) {
+        let result = if self.cancel.is_cancelled() {
+            None
+        } else {
+            self.build_node(plan, built, index).unwrap_or_else(|failure| {
+                failures.push(diagnose(plan, index, failure));
+                None
+            })
+        };
+        let stored = built.cells[&index].result.set(result);
+        debug_assert!(stored.is_ok(), "a node is built once");
+        for reader in plan.graph.nodes.neighbors_directed(index, Direction::Outgoing) {
+            let Some(cell) = built.cells.get(&reader) else { continue };
+            if cell.waiting.fetch_sub(1, Ordering::AcqRel) == 1 {
+                scope.spawn(move |scope| self.run(plan, built, failures, reader, scope));
+            }
+        }
+    }
+
+    /// Builds one node, or finds it; `None` if something it reads has failed.
+    fn build_node(
+        &self,
+        plan: &Plan<'_>,
+        built: &Built,
+        index: NodeIndex,
+    ) -> Result<Option<Structure>, Failure> {
+        let node = &plan.graph.nodes[index];
+        let resolver = Resolver { plan, built, node };
+        let Some(inputs) = resolver.inputs() else { return Ok(None) };
+        let make = || {
+            let build = Build { node: &node.name, seed: plan.graph.seed };
+            call(|| (node.kind.build)(&Inputs::new(node.kind, &inputs), &build))
+        };
+        if node.kind.is_structure() {
+            self.structure(node, resolver.content_key(), make).map(Some)
+        } else {
+            let values = make()?;
+            let keys = values.iter().map(content::key).collect();
+            Ok(Some(Structure { values, keys }))
+        }
+    }
+
+    /// A structure from memory, from the store, or made.
+    fn structure(
+        &self,
+        node: &Node,
+        key: Key,
+        make: impl FnOnce() -> Result<Vec<Value>, Failure>,
+    ) -> Result<Structure, Failure> {
+        let name = node.name.to_string();
+        if let Some(structure) = self.memory.structure(&key) {
+            self.listener.hear(Event::StructureReused { node: name, from: From::Memory });
+            return Ok(structure);
+        }
+        let start = Instant::now();
+        let stored = self.store.and_then(|store| store.get("structure", &key));
+        if let Some(structure) = stored.and_then(|bytes| content::decode(node.kind, &bytes)) {
+            self.memory.put_structure(key, structure.clone(), 4096, nanoseconds(start));
+            self.listener.hear(Event::StructureReused { node: name, from: From::Disk });
+            return Ok(structure);
+        }
+        let values = make()?;
+        let bytes = content::encode(&values);
+        let keys = values.iter().map(content::key).collect();
+        let structure = Structure { values, keys };
+        self.memory.put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
+        if let Some(Err(error)) = self.store.map(|store| store.put("structure", &key, &bytes)) {
+            self.listener.hear(Event::StoreFailed { reason: error.to_string() });
+        }
+        let milliseconds = nanoseconds(start) * 1e-6;
+        self.listener.hear(Event::StructureBuilt { node: name, milliseconds });
+        Ok(structure)
+    }
+}
+
+impl Cell {
+    fn new(plan: &Plan<'_>, node: NodeIndex) -> Cell {
+        let waiting = plan.graph.nodes.edges_directed(node, Direction::Incoming).count();
+        Cell { waiting: AtomicUsize::new(waiting), result: OnceLock::new() }
+    }
+}
+
+#[derive(Default)]
+struct OnceLockList(std::sync::Mutex<Vec<Diagnostic>>);
+
+impl OnceLockList {
+    fn push(&self, diagnostic: Diagnostic) {
+        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(diagnostic);
+    }
+}
+
+/// Finds the values of a node's inputs.
+struct Resolver<'a> {
+    plan: &'a Plan<'a>,
+    built: &'a Built,
+    node: &'a Node,
+}
+
+impl Resolver<'_> {
+    /// The inputs in order; `None` if something they link to has failed.
+    fn inputs(&self) -> Option<Vec<Option<Value>>> {
+        self.node.inputs.iter().map(|binding| self.value(&binding.source)).collect()
+    }
+
+    /// `None` if a link leads to a failed node, `Some(None)` for an absent input.
+    fn value(&self, source: &Source) -> Option<Option<Value>> {
+        Some(match source {
+            Source::Absent => None,
+            Source::Literal(value) => Some(value.clone()),
+            Source::File(path) => Some(Value::File(self.plan.files[path].clone())),
+            Source::Link(link) => {
+                Some(self.built.structure(link.node)?.values[link.output].clone())
+            }
+            Source::Arithmetic(expression) => {
+                if !links_are_built(expression, self.built) {
+                    return None;
+                }
+                let linked = |link: &Link| self.field(link);
+                Some(Value::Field(arithmetic::field(&self.node.name, expression, &linked)))
+            }
+            Source::Channels(channels) => {
+                let mut values = vec![];
+                for (name, source) in channels {
+                    values.extend(self.value(source)?.map(|value| (name.clone(), value)));
+                }
+                Some(Value::Channels(values))
+            }
+        })
+    }
+
+    fn field(&self, link: &Link) -> Field {
+        field_of(&self.built.values(link.node)[link.output])
+            .expect("checking the recipe has ruled out other links in arithmetic")
+    }
+
+    /// What the node is made of: its kind, its literals, and the content of what it links to.
+    fn content_key(&self) -> Key {
+        let mut key = KeyHasher::new("structure", self.node.kind.version);
+        key.text(self.node.kind.name);
+        for Binding { source, .. } in &self.node.inputs {
+            match source {
+                Source::Link(link) => {
+                    key.text("link").key(self.built.key(link.node, link.output));
+                }
+                other => match self.value(other).flatten() {
+                    Some(value) => value.add_to_key(&mut key),
+                    None => {
+                        key.text("absent");
+                    }
+                },
+            }
+        }
+        key.finish()
+    }
+}
+
+fn links_are_built(arithmetic: &crate::graph::Arithmetic, built: &Built) -> bool {
+    use crate::graph::Arithmetic;
+    match arithmetic {
+        Arithmetic::Number(_) => true,
+        Arithmetic::Link(link) => built.structure(link.node).is_some(),
+        Arithmetic::Negate(inner) => links_are_built(inner, built),
+        Arithmetic::Binary(_, sides) => sides.iter().all(|side| links_are_built(side, built)),
+        Arithmetic::Call(_, arguments) => {
+            arguments.iter().all(|argument| links_are_built(argument, built))
+        }
+    }
+}
+
+/// Calls a build function; a panic in it is a failure of the node, not of the program.
+fn call(make: impl FnOnce() -> Result<Vec<Value>, Failure>) -> Result<Vec<Value>, Failure> {
+    catch_unwind(AssertUnwindSafe(make)).unwrap_or_else(|panic| {
+        let reason = panic
+            .downcast_ref::<String>()
+            .map(String::as_str)
+            .or_else(|| panic.downcast_ref::<&str>().copied())
+            .unwrap_or("unknown reason");
+        Err(Failure::new(format!("a fault in Yosegi itself: {reason}"))
+            .with_hint("report this with the recipe"))
+    })
+}
+
+fn diagnose(plan: &Plan<'_>, index: NodeIndex, failure: Failure) -> Diagnostic {
+    let node = &plan.graph.nodes[index];
+    let blamed = failure.input.and_then(|name| node.kind.input(name));
+    let span = match blamed {
+        Some((position, _)) => node.inputs[position].span.clone(),
+        None => node.span.clone(),
+    };
+    let mut diagnostic = Diagnostic::error(Code::NodeFailed, failure.message)
+        .at(&plan.graph.source, span, "")
+        .in_node(&*node.name);
+    diagnostic.hints.extend(failure.hint);
+    diagnostic
+}
+
+fn nanoseconds(start: Instant) -> f64 {
+    start.elapsed().as_nanos() as f64
+}

@@ -1,0 +1,113 @@
+//! What a run reports while it goes on: progress bars, `--json`, tests and `why` read the same events.
+
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Where something came from that did not have to be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum From {
+    /// The memory of this process.
+    Memory,
+    /// The store on disk.
+    Disk,
+}
+
+/// One thing that happened during a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub enum Event {
+    /// A structure was built.
+    StructureBuilt {
+        /// The node.
+        node: String,
+        /// How long it took.
+        milliseconds: f64,
+    },
+    /// A structure was there already.
+    StructureReused {
+        /// The node.
+        node: String,
+        /// Where it was.
+        from: From,
+    },
+    /// How many tiles of an output a node's kernels computed, and how many the cache gave.
+    FieldTiles {
+        /// The output.
+        output: String,
+        /// The node.
+        node: String,
+        /// Tiles in which a kernel of the node ran.
+        computed: usize,
+        /// Tiles that needed nothing but cached columns of the node.
+        reused: usize,
+    },
+    /// Tiles of an output that are done.
+    Progress {
+        /// The output.
+        output: String,
+        /// Tiles done so far.
+        done: usize,
+        /// All tiles.
+        total: usize,
+    },
+    /// A map is in its place.
+    MapWritten {
+        /// The output.
+        output: String,
+        /// The channel.
+        channel: String,
+        /// The file.
+        path: PathBuf,
+        /// Its size in bytes.
+        bytes: u64,
+        /// Samples that were not finite and were written as 0.
+        not_finite: u64,
+        /// Samples outside the range that the format can hold.
+        clamped: u64,
+    },
+    /// The file on disk is what it should be.
+    MapUpToDate {
+        /// The output.
+        output: String,
+        /// The channel.
+        channel: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file was copied from the store.
+    MapRestored {
+        /// The output.
+        output: String,
+        /// The channel.
+        channel: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// An output is complete.
+    OutputDone {
+        /// The output.
+        output: String,
+        /// How long it took.
+        milliseconds: f64,
+    },
+    /// The store cannot be used; the run goes on without it.
+    StoreFailed {
+        /// What the operating system says.
+        reason: String,
+    },
+    /// The run was stopped before its end.
+    Cancelled,
+}
+
+/// Receives events, possibly from several threads at once.
+pub trait Listener: Sync {
+    /// Takes one event.
+    fn hear(&self, event: Event);
+}
+
+impl<F: Fn(Event) + Sync> Listener for F {
+    fn hear(&self, event: Event) {
+        self(event);
+    }
+}

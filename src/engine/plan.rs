@@ -1,0 +1,145 @@
+//! What has to run for some nodes: their ancestors in order, the files these read, and plan keys.
+
+use super::RunError;
+use crate::diagnostics::{Code, Diagnostic};
+use crate::graph::{Arithmetic, Graph, Source};
+use crate::key::{Key, KeyHasher};
+use crate::value::FileContents;
+use crate::world::World;
+use petgraph::Direction;
+use petgraph::graph::NodeIndex;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// The part of a graph that some nodes depend on.
+pub(super) struct Plan<'g> {
+    pub(super) graph: &'g Graph,
+    /// The nodes that have to run, each behind the ones it reads.
+    pub(super) order: Vec<NodeIndex>,
+    /// Contents of the files that they name.
+    pub(super) files: HashMap<PathBuf, FileContents>,
+    /// For every node in `order` what it is, before anything has run.
+    pub(super) keys: HashMap<NodeIndex, Key>,
+}
+
+impl<'g> Plan<'g> {
+    /// Plans what `wanted` needs, and reads the files it names.
+    pub(super) fn new(
+        graph: &'g Graph,
+        wanted: &[NodeIndex],
+        world: &dyn World,
+    ) -> Result<Plan<'g>, RunError> {
+        let order = ancestors(graph, wanted);
+        let files = read_files(graph, &order, world)?;
+        let mut plan = Plan { graph, order, files, keys: HashMap::new() };
+        for index in plan.order.clone() {
+            let key = plan.node_key(index);
+            plan.keys.insert(index, key);
+        }
+        Ok(plan)
+    }
+
+    fn node_key(&self, index: NodeIndex) -> Key {
+        let node = &self.graph.nodes[index];
+        let mut key = KeyHasher::new("node", node.kind.version);
+        key.text(node.kind.name);
+        node.inputs.iter().for_each(|input| self.add_source(&mut key, &input.source));
+        key.finish()
+    }
+
+    fn add_source(&self, key: &mut KeyHasher, source: &Source) {
+        match source {
+            Source::Absent => {
+                key.text("absent");
+            }
+            Source::Literal(value) => value.add_to_key(key),
+            Source::File(path) => {
+                key.text("file").bytes(&self.files[path].bytes);
+            }
+            Source::Link(link) => {
+                key.text("link").key(self.keys[&link.node]).whole(link.output as i64);
+            }
+            Source::Arithmetic(arithmetic) => self.add_arithmetic(key, arithmetic),
+            Source::Channels(channels) => {
+                key.text("channels").whole(channels.len() as i64);
+                for (name, source) in channels {
+                    self.add_source(key.text(name), source);
+                }
+            }
+        }
+    }
+
+    fn add_arithmetic(&self, key: &mut KeyHasher, arithmetic: &Arithmetic) {
+        match arithmetic {
+            Arithmetic::Number(number) => {
+                key.text("number").number(*number);
+            }
+            Arithmetic::Link(link) => self.add_source(key, &Source::Link(*link)),
+            Arithmetic::Negate(inner) => self.add_arithmetic(key.text("negate"), inner),
+            Arithmetic::Binary(operator, sides) => {
+                key.text("binary").whole(*operator as i64);
+                sides.iter().for_each(|side| self.add_arithmetic(key, side));
+            }
+            Arithmetic::Call(function, arguments) => {
+                key.text("call").whole(*function as i64).whole(arguments.len() as i64);
+                arguments.iter().for_each(|argument| self.add_arithmetic(key, argument));
+            }
+        }
+    }
+}
+
+/// `wanted` and all they depend on, each node behind the ones it reads.
+fn ancestors(graph: &Graph, wanted: &[NodeIndex]) -> Vec<NodeIndex> {
+    let mut needed = vec![false; graph.nodes.node_count()];
+    let mut pending = wanted.to_vec();
+    while let Some(node) = pending.pop() {
+        if !std::mem::replace(&mut needed[node.index()], true) {
+            pending.extend(graph.nodes.neighbors_directed(node, Direction::Incoming));
+        }
+    }
+    petgraph::algo::toposort(&graph.nodes, None)
+        .expect("a checked graph has no cycle")
+        .into_iter()
+        .filter(|node| needed[node.index()])
+        .collect()
+}
+
+fn read_files(
+    graph: &Graph,
+    order: &[NodeIndex],
+    world: &dyn World,
+) -> Result<HashMap<PathBuf, FileContents>, RunError> {
+    let folder = graph.source.path.parent().unwrap_or(Path::new(""));
+    let mut files = HashMap::new();
+    let mut errors = vec![];
+    for index in order {
+        let node = &graph.nodes[*index];
+        for (input, binding) in node.kind.inputs.iter().zip(&node.inputs) {
+            let Source::File(path) = &binding.source else { continue };
+            if files.contains_key(path) {
+                continue;
+            }
+            match world.read(&folder.join(path)) {
+                Ok(bytes) => {
+                    let contents = FileContents { path: path.clone(), bytes: bytes.into() };
+                    files.insert(path.clone(), contents);
+                }
+                Err(error) => errors.push(
+                    Diagnostic::error(
+                        Code::FileNotRead,
+                        format!("cannot read `{}`: {error}", path.display()),
+                    )
+                    .at(&graph.source, binding.span.clone(), format!("named by `{}`", input.name))
+                    .in_node(&*node.name)
+                    .hint(format!("files are looked for beside the recipe, in `{}`", shown(folder))),
+                ),
+            }
+        }
+    }
+    if errors.is_empty() { Ok(files) } else { Err(RunError::Files(errors)) }
+}
+
+/// The folder as a person would write it.
+fn shown(folder: &Path) -> String {
+    if folder.as_os_str().is_empty() { ".".to_owned() } else { folder.display().to_string() }
+}

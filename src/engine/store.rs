@@ -1,0 +1,98 @@
+//! The store on disk: structures and finished maps, as plain files named by key.
+//!
+//! Every entry holds the key it belongs to and a checksum, is written beside its place and renamed. An
+//! entry that is damaged, cut short or of another key is a miss. Nothing here makes a run fail: without a
+//! store everything is computed.
+
+use crate::key::Key;
+use crate::world::World;
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Raised when the layout of entries changes.
+const LAYOUT: &[u8; 8] = b"yosegi01";
+
+/// Layout, and the hexadecimal digits of a key and of a checksum.
+const HEADER: usize = LAYOUT.len() + 64 + 64;
+
+/// Files larger than this are not copied into the store; their checksums are.
+const LARGEST_COPY: u64 = 64 << 20;
+
+/// What the store knows of a map that was written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct MapRecord {
+    /// Hash of the whole file.
+    pub(super) file: Key,
+    /// Size of the file in bytes.
+    pub(super) bytes: u64,
+}
+
+/// A folder of entries.
+#[derive(Clone)]
+pub(super) struct Store {
+    world: Arc<dyn World>,
+    folder: PathBuf,
+}
+
+impl Store {
+    /// A store in `folder`, which is made when the first entry is written.
+    pub(super) fn new(world: Arc<dyn World>, folder: PathBuf) -> Store {
+        Store { world, folder }
+    }
+
+    /// The bytes of the entry `key` of the family `family`.
+    pub(super) fn get(&self, family: &str, key: &Key) -> Option<Vec<u8>> {
+        let mut entry = self.world.read(&self.path(family, key)).ok()?;
+        let payload = entry.get(HEADER..)?;
+        if entry[..HEADER] != header(key, payload)[..] {
+            return None;
+        }
+        entry.drain(..HEADER);
+        Some(entry)
+    }
+
+    /// Stores an entry.
+    ///
+    /// # Errors
+    /// Whatever the operating system says; the entry is then not there.
+    pub(super) fn put(&self, family: &str, key: &Key, payload: &[u8]) -> io::Result<()> {
+        let mut file = self.world.create(&self.path(family, key))?;
+        file.write_all(&header(key, payload))?;
+        file.write_all(payload)?;
+        file.commit()
+    }
+
+    /// The record of a map.
+    pub(super) fn map(&self, key: &Key) -> Option<MapRecord> {
+        postcard::from_bytes(&self.get("map", key)?).ok()
+    }
+
+    /// Remembers a map that was just written to `path`.
+    ///
+    /// # Errors
+    /// Whatever the operating system says.
+    pub(super) fn put_map(&self, key: &Key, path: &Path) -> io::Result<()> {
+        let contents = self.world.read(path)?;
+        let record = MapRecord { file: Key::of_bytes(&contents), bytes: contents.len() as u64 };
+        if record.bytes <= LARGEST_COPY {
+            self.put("file", &record.file, &contents)?;
+        }
+        let bytes = postcard::to_stdvec(&record).map_err(io::Error::other)?;
+        self.put("map", key, &bytes)
+    }
+
+    fn path(&self, family: &str, key: &Key) -> PathBuf {
+        let name = key.hexadecimal();
+        self.folder.join(family).join(&name[..2]).join(&name[2..])
+    }
+}
+
+/// Layout, key and checksum of an entry.
+fn header(key: &Key, payload: &[u8]) -> Vec<u8> {
+    let mut header = LAYOUT.to_vec();
+    header.extend_from_slice(key.hexadecimal().as_bytes());
+    header.extend_from_slice(Key::of_bytes(payload).hexadecimal().as_bytes());
+    header
+}
