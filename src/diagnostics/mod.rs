@@ -1,25 +1,20 @@
 //! What is wrong with a recipe or a run: one type for the terminal, for JSON and for tests.
 
 mod codes;
+pub(crate) mod excerpt;
+mod json;
 mod nearest;
 mod render;
+mod source;
 
 pub use codes::Code;
+pub use json::render_json;
 pub use nearest::nearest;
-pub use render::{render_json, render_text};
+pub use render::{render_all, render_all_styled, render_styled, render_text, sort};
+pub use source::{Position, SourceFile};
 
 use std::ops::Range;
-use std::path::PathBuf;
 use std::sync::Arc;
-
-/// The text of a recipe with the path it came from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SourceFile {
-    /// The path as the caller gave it.
-    pub path: PathBuf,
-    /// The whole text.
-    pub text: String,
-}
 
 /// Bytes of a source text.
 pub type Span = Range<usize>;
@@ -89,19 +84,33 @@ impl Diagnostic {
 
     /// A warning about no place in particular.
     pub fn warning(code: Code, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, message) }
+        Diagnostic {
+            severity: Severity::Warning,
+            ..Diagnostic::error(code, message)
+        }
     }
 
     /// Points at a place.
-    pub fn at(mut self, source: &Arc<SourceFile>, span: Span, text: impl Into<String>) -> Diagnostic {
+    pub fn at(
+        mut self,
+        source: &Arc<SourceFile>,
+        span: Span,
+        text: impl Into<String>,
+    ) -> Diagnostic {
         self.source = Some(Arc::clone(source));
-        self.label = Some(Label { span, text: text.into() });
+        self.label = Some(Label {
+            span,
+            text: text.into(),
+        });
         self
     }
 
     /// Points at another place of the same file that explains it.
     pub fn and_at(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
-        self.context.push(Label { span, text: text.into() });
+        self.context.push(Label {
+            span,
+            text: text.into(),
+        });
         self
     }
 
