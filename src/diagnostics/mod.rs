@@ -1,13 +1,14 @@
 //! What is wrong with a recipe or a run: one type for the terminal, for JSON and for tests.
 
 mod codes;
-pub(crate) mod excerpt;
+mod excerpt;
 mod json;
 mod nearest;
 mod render;
 mod source;
 
 pub use codes::Code;
+pub(crate) use excerpt::is_unsafe;
 pub use json::render_json;
 pub use nearest::nearest;
 pub use render::{render_all, render_all_styled, render_styled, render_text, sort};
