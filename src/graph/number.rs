@@ -78,7 +78,7 @@ mod tests {
             let expected: f64 = ron::from_str(text).unwrap();
             assert_eq!(read(text), Some(Written::Real(expected)), "{text}");
         }
-        for text in ["12", "-7", "0xff", "0b101", "-0o17", "1_000", "5u8", "+3"] {
+        for text in ["12", "-7", "0xff", "0b101", "-0o17", "1_000", "5i64", "+3"] {
             let expected: i64 = ron::from_str(text).unwrap();
             assert_eq!(read(text), Some(Written::Whole(Some(expected))), "{text}");
         }
