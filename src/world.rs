@@ -37,7 +37,10 @@ impl World for Disk {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         // A FIFO or a device would never end.
         if !std::fs::metadata(path)?.is_file() {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "not a regular file",
+            ));
         }
         std::fs::read(path)
     }
@@ -90,7 +93,10 @@ impl Seek for DiskFile {
 
 impl PendingFile for DiskFile {
     fn commit(self: Box<Self>) -> io::Result<()> {
-        let file = self.file.into_inner().map_err(io::IntoInnerError::into_error)?;
+        let file = self
+            .file
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)?;
         file.persist(&self.path)?;
         Ok(())
     }
