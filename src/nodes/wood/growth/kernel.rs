@@ -15,12 +15,12 @@ use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 use glam::Vec3;
+use std::fmt;
 
 /// Samples in a run: they stay in the fastest cache, and few branches are near all of them.
 const RUN: usize = 128;
 
 /// From the position (x, y, z) in mm to T in years and the share of the branches in it.
-#[derive(Debug)]
 pub struct GrowthKernel {
     model: GrowthModel,
     trunk: TrunkTable,
@@ -40,6 +40,17 @@ impl GrowthKernel {
             power: Power::new(model.settings.sharpness),
             model,
         }
+    }
+}
+
+impl fmt::Debug for GrowthKernel {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("GrowthKernel")
+            .field("settings", &self.model.settings)
+            .field("nodes", &self.model.curve.nodes().len())
+            .field("branches", &self.branches.len())
+            .finish_non_exhaustive()
     }
 }
 

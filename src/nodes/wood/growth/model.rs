@@ -5,6 +5,9 @@ use crate::node::Failure;
 use crate::value::{Skeleton, Thickness};
 use glam::DVec3;
 
+/// The fastest thickening of a branch in mm/year.
+const FASTEST: f64 = 1e5;
+
 /// How a tree grows along its skeleton.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowthSettings {
@@ -208,9 +211,10 @@ impl GrowthModel {
             } => {
                 let end_time = self.trunk_time(branch.start + branch.direction * distance);
                 let left = end_time - branch.start_time - distance / self.settings.elongation;
-                if !(left > 0.0) {
+                // Of two equal times rounding may leave a difference.
+                if left <= 1e-9 * end_time.abs() {
                     return Err(format!(
-                        "it would need {:.3} more years to grow {distance} mm long than the trunk needs to grow around it",
+                        "the trunk's wood is there {:.3} years before the branch is {distance} mm long",
                         -left
                     ));
                 }
@@ -218,11 +222,11 @@ impl GrowthModel {
                     / (distance * left)
             }
         };
-        if speed > 0.0 && speed.is_finite() {
+        if speed > 0.0 && speed <= FASTEST {
             Ok(speed)
         } else {
             Err(format!(
-                "expected a positive speed of thickening, found {speed} mm/year"
+                "expected a thickening from 0 to {FASTEST} mm/year, found {speed}"
             ))
         }
     }
