@@ -1,1 +1,6 @@
 //! Wood.
+
+pub mod growth;
+pub mod growth_field;
+pub mod skeleton;
+pub mod skeleton_from_file;
