@@ -9,6 +9,9 @@ use crate::node::Kind;
 /// Every kind there is, in the order of the manual.
 pub static KINDS: &[&Kind] = &[
     &surface::material::KIND,
+    &surface::mix::KIND,
+    &wood::colour_pattern::KIND,
+    &wood::pattern_lookup::KIND,
 ];
 
 /// The kind called `name`.

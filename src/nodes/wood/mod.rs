@@ -1,1 +1,4 @@
 //! Wood.
+
+pub mod colour_pattern;
+pub mod pattern_lookup;
