@@ -1,8 +1,11 @@
 //! Colour patterns: the tables, the lookup and its filter, and photographs of wood.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 mod lookup;
 mod nodes;
 
+use fearless_simd::Level;
 use std::sync::Arc;
 use yosegi::field::{Field, PixelGrid, Program, RunContext, Samples, Scratch, Target};
 use yosegi::key::Key;
@@ -49,7 +52,11 @@ fn look_up(pattern: &ColourPattern, time: Field) -> Vec<Field> {
 
 /// The columns of `fields` at `samples`.
 fn columns(fields: &[Field], samples: &Samples<'_>) -> Vec<Vec<f32>> {
-    let level = fearless_simd::Level::new();
+    columns_with(Level::new(), fields, samples)
+}
+
+/// The columns of `fields` at `samples`, computed with the given vector instructions.
+fn columns_with(level: Level, fields: &[Field], samples: &Samples<'_>) -> Vec<Vec<f32>> {
     let context = RunContext {
         level,
         cache: None,

@@ -4,12 +4,15 @@
 //! texel centres. With one it is the exact mean over the growth time within the sample, so rings finer than
 //! a pixel melt into their mean colour and the border between late and early wood is as wide as a pixel.
 
+mod span;
 mod table;
 
-use crate::field::{Block, Kernel, Sampling};
+use crate::field::{Block, InputColumn, Kernel, Sampling};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{AfterEnd, ColourPattern, Type, Unit, Value};
+use fearless_simd::dispatch;
+use span::{BLOCK, Spans};
 use table::Table;
 
 /// Looks up a colour pattern by growth time.
@@ -110,25 +113,33 @@ impl Kernel for Lookup {
 
     fn evaluate(&self, block: &mut Block<'_>) {
         let time = block.inputs[0];
-        let [red, green, blue, position, inside] = block.outputs else {
-            unreachable!("the kernel has five columns");
-        };
-        let spread = time.spread[0].iter().zip(time.spread[1]);
-        let colour = red.iter_mut().zip(green).zip(blue);
-        let outputs = colour.zip(position).zip(inside);
-        for ((time, (across, along)), outputs) in time.values.iter().zip(spread).zip(outputs) {
-            let (((red, green), blue), position) = outputs.0;
-            let look = self.table.look(f64::from(*time), width(*across, *along));
-            [*red, *green, *blue] = look.colour.map(|part| part as f32);
-            *position = look.position as f32;
-            *outputs.1 = look.inside as f32;
-        }
+        let outputs = &mut *block.outputs;
+        dispatch!(block.level, _ => self.look_up(time, outputs));
     }
 }
 
-/// How much the time changes within a sample whose neighbours differ by these two.
-#[inline(always)]
-fn width(across: f32, along: f32) -> f64 {
-    let (across, along) = (f64::from(across), f64::from(along));
-    (across * across + along * along).sqrt()
+impl Lookup {
+    #[inline(always)]
+    fn look_up(&self, time: InputColumn<'_>, outputs: &mut [Vec<f32>]) {
+        let mut spans = Spans::new();
+        let mut means = [[0.0; 4]; BLOCK];
+        let length = time.values.len();
+        for start in (0..length).step_by(BLOCK) {
+            let range = start..length.min(start + BLOCK);
+            let read = |column: &[f32]| {
+                let mut block = [0.0; BLOCK];
+                block[..range.len()].copy_from_slice(&column[range.clone()]);
+                block
+            };
+            let (times, spread) = (read(time.values), time.spread.map(read));
+            spans.place(&self.table, &times, [&spread[0], &spread[1]]);
+            self.table.means(&spans, &mut means);
+            for (lane, output) in outputs[..4].iter_mut().enumerate() {
+                for (output, mean) in output[range.clone()].iter_mut().zip(&means) {
+                    *output = mean[lane];
+                }
+            }
+            outputs[4][range.clone()].copy_from_slice(&spans.inside[..range.len()]);
+        }
+    }
 }

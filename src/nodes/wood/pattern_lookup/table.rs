@@ -1,226 +1,150 @@
 //! A colour pattern prepared for exact averages over spans of growth time.
 //!
-//! The table is a chain of pieces on which colour is linear, with the integral up to the start of each:
-//! an average over any span is the difference of two integrals (summed-area tables, Crow 1984, in one
-//! dimension), whole periods in closed form. The position in the ring is linear within each ring, so its
-//! integral needs no table.
+//! The table is a chain of pieces on which colour and position are linear, with the integral up to the
+//! start of each: an average is the difference of two integrals (summed-area tables, Crow 1984, in one
+//! dimension), whole periods in closed form. What is left of the first piece and what is used of the last
+//! are added as they are, so that short spans lose no digits.
 
+use super::span::{BLOCK, Spans};
 use crate::value::{AfterEnd, ColourPattern};
 
-/// Spans shorter than this part of a texel are looked up like points: the integrals' difference
-/// would lose its digits.
-const POINT: f64 = 1e-5;
+/// Spans shorter than this part of a texel are points.
+pub(super) const POINT: f64 = 1e-5;
 
 /// Largest number of tables between time 0 and a sample: no f32 has a fraction there any more.
-const FARTHEST: f64 = 1e9;
+pub(super) const FARTHEST: f64 = 1e9;
 
-/// What a pattern gives for a span of growth time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Look {
-    /// Mean colour of the part inside the pattern; the last colour if there is none.
-    pub(super) colour: [f64; 3],
-    /// Mean position in the ring of the part inside the pattern; 1 if there is none.
-    pub(super) position: f64,
-    /// Share of the span before the pattern's end.
-    pub(super) inside: f64,
-}
+/// Red, green, blue, position in the ring.
+type Lanes = [f32; 4];
 
 /// Pieces and rings of a pattern.
 #[derive(Debug)]
 pub(super) struct Table {
-    pieces: Vec<Piece>,
-    rings: Vec<Ring>,
+    pub(super) years: f64,
+    pub(super) frequency: f64,
+    pub(super) texels_per_year: f64,
+    pub(super) repeats: bool,
     /// From texel borders to piece borders: 0.5 where colours are interpolated between centres.
-    offset: f64,
-    texels: f64,
-    years: f64,
-    frequency: f64,
-    total: [f64; 3],
-    first: [f64; 3],
-    last: [f64; 3],
-    repeats: bool,
+    pub(super) offset: f64,
+    /// Where the last piece ends, in pieces.
+    length: f32,
+    pieces: Vec<Piece>,
+    /// What one whole period, or one texel before the start, adds to an integral.
+    lead: [f64; 4],
+    /// Empty where the pieces hold the position.
+    rings: Vec<Ring>,
+    /// The ring that holds the start of each piece.
+    ring_of: Vec<u32>,
 }
 
-/// Colour `value + 2 slope g` at the distance g, in texels, from the start of the piece.
-#[derive(Debug)]
+/// The value is `value + 2 slope g` at the distance g, in texels, from the start of the piece.
+#[derive(Clone, Debug)]
 struct Piece {
-    /// Integral from the start of the table to the start of the piece.
-    integral: [f64; 3],
-    value: [f64; 3],
+    value: Lanes,
     /// Half the change over the piece.
-    slope: [f64; 3],
-    /// The ring that holds the start of the piece.
-    ring: u32,
+    slope: Lanes,
+    /// Integral in texels from the start of the table to the start of the piece.
+    integral: [f64; 4],
 }
 
-#[derive(Debug)]
+/// A ring, in years from the start of the table.
+#[derive(Clone, Debug)]
 struct Ring {
     start: f64,
     reciprocal: f64,
 }
 
-/// Integrals from the start of the table.
-struct Integral {
-    /// In texels.
-    colour: [f64; 3],
-    /// In tables.
-    position: f64,
-}
-
 impl Table {
     /// Prepares a pattern.
     pub(super) fn new(pattern: &ColourPattern) -> Table {
-        let colours: Vec<[f64; 3]> = pattern
-            .colours
-            .iter()
-            .map(|colour| colour.map(f64::from))
-            .collect();
-        let texels = colours.len() as f64;
-        let rings = rings(&pattern.ring_starts);
+        let repeats = pattern.after_end == AfterEnd::Repeat;
+        let texels = pattern.colours.len() as f64;
         let offset = if pattern.smooth { 0.5 } else { 0.0 };
-        let pieces = pieces(&colours, &rings, pattern.smooth);
-        let total = colours
-            .iter()
-            .fold([0.0; 3], |sum, colour| add(sum, *colour, 1.0));
+        let pieces = pieces(&pattern.colours, pattern.smooth);
+        let [red, green, blue] = pattern.colours[0];
+        let total = pieces[pieces.len() - 2].integral;
+        let lead = if repeats {
+            total
+        } else {
+            [red, green, blue, 0.0].map(f64::from)
+        };
+        let several = pattern.ring_starts.len() > 1;
+        let rings = if several {
+            rings(&pattern.ring_starts, pattern.years)
+        } else {
+            vec![]
+        };
+        let ring_of = |piece: usize| {
+            let start = (piece as f64 - offset) / texels * pattern.years;
+            rings.partition_point(|ring| ring.start <= start).max(1) as u32 - 1
+        };
         Table {
-            pieces,
-            rings,
-            offset,
-            texels,
             years: pattern.years,
             frequency: 1.0 / pattern.years,
-            total,
-            first: colours[0],
-            last: colours[colours.len() - 1],
-            repeats: pattern.after_end == AfterEnd::Repeat,
+            texels_per_year: texels / pattern.years,
+            repeats,
+            offset,
+            length: (texels + offset) as f32,
+            lead,
+            ring_of: (0..pieces.len()).map(ring_of).collect(),
+            pieces,
+            rings,
         }
     }
 
-    /// What the pattern gives on average over `width` years around `time`.
+    /// The mean colours and positions of spans.
     #[inline(always)]
-    pub(super) fn look(&self, time: f64, width: f64) -> Look {
-        let farthest = FARTHEST * self.years;
-        // NaN becomes a number here: `max` and `min` give the other operand.
-        let time = time.max(-farthest).min(farthest);
-        let half = 0.5 * (width.max(0.0).min(farthest) * self.frequency);
-        if self.repeats {
-            self.repeating(time, half)
-        } else {
-            self.ending(time / self.years, half)
-        }
-    }
-
-    #[inline(always)]
-    fn repeating(&self, time: f64, half: f64) -> Look {
-        let middle = (time - self.periods(time) * self.years) / self.years;
-        let texels = 2.0 * half * self.texels;
-        if texels < POINT {
-            return self.point(middle);
-        }
-        let (from, to) = (middle - half, middle + half);
-        let (from_period, to_period) = (floor(from), floor(to));
-        let start = self.integral(from - from_period);
-        let end = self.integral(to - to_period);
-        let periods = to_period - from_period;
-        let colour = add(difference(end.colour, start.colour), self.total, periods);
-        // The mean position of every whole ring is a half, so that of a whole table is too.
-        let position = end.position - start.position + 0.5 * periods;
-        let scale = 1.0 / texels;
-        Look {
-            colour: colour.map(|part| part * scale),
-            position: position * (scale * self.texels),
-            inside: 1.0,
-        }
-    }
-
-    /// Number of whole tables before `time`.
-    #[inline(always)]
-    fn periods(&self, time: f64) -> f64 {
-        // The product may be rounded across a whole number: years 46.9.. to 47 over 47 years.
-        let near = floor(time * self.frequency);
-        let near = if time >= (near + 1.0) * self.years {
-            near + 1.0
-        } else {
-            near
-        };
-        if time < near * self.years {
-            near - 1.0
-        } else {
-            near
-        }
-    }
-
-    #[inline(always)]
-    fn ending(&self, middle: f64, half: f64) -> Look {
-        let (from, to) = (middle - half, (middle + half).min(1.0));
-        let texels = (to - from) * self.texels;
-        if 2.0 * half * self.texels < POINT {
-            return if middle < 1.0 {
-                self.point(middle.max(0.0))
+    pub(super) fn means(&self, spans: &Spans, means: &mut [Lanes; BLOCK]) {
+        for (index, mean) in means.iter_mut().enumerate() {
+            let (first, last) = (spans.starts.piece[index], spans.ends.piece[index]);
+            let (from, to) = (spans.starts.along[index], spans.ends.along[index]);
+            let lead = f64::from(spans.lead[index]);
+            let start = &self.pieces[first as usize];
+            *mean = if first == last && lead == 0.0 {
+                let middle = from + to;
+                lanes(|lane| start.value[lane] + start.slope[lane] * middle)
             } else {
-                self.nothing(0.0)
+                let after = &self.pieces[first as usize + 1];
+                let end = &self.pieces[last as usize];
+                // The first and the last piece may be halves.
+                let border = (self.length - first as f32).min(1.0);
+                let begin = (self.offset as f32 - last as f32).max(0.0);
+                let [rest, used] = [border - from, to - begin];
+                let scale = spans.scale[index];
+                lanes(|lane| {
+                    let tail = rest * (start.value[lane] + start.slope[lane] * (border + from));
+                    let head = used * (end.value[lane] + end.slope[lane] * (to + begin));
+                    let whole = end.integral[lane] - after.integral[lane];
+                    ((tail + head) + (whole + lead * self.lead[lane]) as f32) * scale
+                })
             };
         }
-        if texels < POINT {
-            return self.nothing(((to - from) / (2.0 * half)).max(0.0));
-        }
-        // Before its start the pattern has its first colour and position 0.
-        let [start, end] = [from, to].map(|at| self.integral(at.max(0.0)));
-        let before = (to.min(0.0) - from.min(0.0)) * self.texels;
-        let colour = add(difference(end.colour, start.colour), self.first, before);
-        let scale = 1.0 / texels;
-        Look {
-            colour: colour.map(|part| part * scale),
-            position: (end.position - start.position) * (scale * self.texels),
-            inside: (to - from) / (2.0 * half),
+        if !self.rings.is_empty() {
+            self.positions(spans, means);
         }
     }
 
-    /// The pattern at the place `at` of the table, from 0 to 1.
+    /// The mean positions where there are several rings: linear in each of them.
     #[inline(always)]
-    fn point(&self, at: f64) -> Look {
-        let (piece, g) = self.piece(at);
-        let ring = self.ring(piece, at);
-        Look {
-            colour: add(piece.value, piece.slope, 2.0 * g),
-            position: (at - ring.start) * ring.reciprocal,
-            inside: 1.0,
+    fn positions(&self, spans: &Spans, means: &mut [Lanes; BLOCK]) {
+        let periods = if self.repeats { 0.5 * self.years } else { 0.0 };
+        for (index, mean) in means.iter_mut().enumerate() {
+            let (from, to, lead) = (spans.from[index], spans.to[index], spans.lead[index]);
+            let start = self.ring(spans.starts.piece[index], from);
+            let end = self.ring(spans.ends.piece[index], to);
+            mean[3] = if start.start == end.start && lead == 0.0 {
+                ((0.5 * (from + to) - start.start) * start.reciprocal) as f32
+            } else {
+                let whole = (0.5 * (end.start - start.start)) + f64::from(lead) * periods;
+                let sum = whole + end.part(to) - start.part(from);
+                (sum * self.texels_per_year) as f32 * spans.scale[index]
+            };
         }
-    }
-
-    fn nothing(&self, inside: f64) -> Look {
-        Look {
-            colour: self.last,
-            position: 1.0,
-            inside,
-        }
-    }
-
-    /// The integrals from 0 to `at`, which is from 0 to 1.
-    #[inline(always)]
-    fn integral(&self, at: f64) -> Integral {
-        let (piece, g) = self.piece(at);
-        let ring = self.ring(piece, at);
-        let along = at - ring.start;
-        Integral {
-            colour: add(piece.integral, add(piece.value, piece.slope, g), g),
-            // Every ring before this one contributes half its width.
-            position: 0.5 * (ring.start + along * along * ring.reciprocal),
-        }
-    }
-
-    /// The piece that holds the place `at` of the table, and the distance from its start in texels.
-    #[inline(always)]
-    fn piece(&self, at: f64) -> (&Piece, f64) {
-        let along = at * self.texels + self.offset;
-        // `at` may have been rounded up to 1.
-        let index = index(along).min(self.pieces.len() - 1);
-        (&self.pieces[index], along - index as f64)
     }
 
     #[inline(always)]
-    fn ring(&self, piece: &Piece, at: f64) -> &Ring {
-        let mut index = piece.ring as usize;
+    fn ring(&self, piece: u32, at: f64) -> &Ring {
+        let mut index = self.ring_of[piece as usize] as usize;
         while index + 1 < self.rings.len() && self.rings[index + 1].start <= at {
             index += 1;
         }
@@ -228,8 +152,27 @@ impl Table {
     }
 }
 
-fn rings(starts: &[f64]) -> Vec<Ring> {
-    let ends = starts.iter().skip(1).chain(&[1.0]);
+impl Ring {
+    /// The integral of the position from the start of the ring; over a whole ring it is half the width.
+    #[inline(always)]
+    fn part(&self, to: f64) -> f64 {
+        let along = to - self.start;
+        0.5 * along * along * self.reciprocal
+    }
+}
+
+fn rings(starts: &[f64], years: f64) -> Vec<Ring> {
+    // 5 / 47 * 47 has to be 5, or the first sample of a year would fall into the year before.
+    let start = |start: &f64| {
+        let start = start * years;
+        if (start - start.round()).abs() < 1e-9 {
+            start.round()
+        } else {
+            start
+        }
+    };
+    let starts: Vec<f64> = starts.iter().map(start).collect();
+    let ends = starts.iter().skip(1).chain([&years]);
     let ring = |(start, end): (&f64, &f64)| Ring {
         start: *start,
         reciprocal: 1.0 / (end - start),
@@ -238,67 +181,50 @@ fn rings(starts: &[f64]) -> Vec<Ring> {
 }
 
 /// Without interpolation one piece for each texel; with it one from centre to centre, and half ones at
-/// the ends, where the colour stays that of the outermost centre.
-fn pieces(colours: &[[f64; 3]], rings: &[Ring], smooth: bool) -> Vec<Piece> {
+/// the ends, where the colour stays that of the outermost centre. Two more follow, so that rounding past
+/// the end meets the last colour.
+fn pieces(colours: &[[f32; 3]], smooth: bool) -> Vec<Piece> {
     let count = colours.len();
-    let (pieces, offset) = if smooth {
-        (count + 1, 0.5)
-    } else {
-        (count, 0.0)
+    let position = |border: f64| (border / count as f64) as f32;
+    let colour = |index: usize| colours[index.min(count - 1)];
+    let ends = |index: usize| match smooth {
+        true => (colour(index.max(1) - 1), colour(index), index as f64 - 0.5),
+        false => (colour(index), colour(index), index as f64),
     };
-    let mut integral = if smooth {
-        colours[0].map(|part| -0.5 * part)
-    } else {
-        [0.0; 3]
-    };
+    let mut integral = [0.0; 4];
     let piece = |index: usize| {
-        let (value, next) = if smooth {
-            (colours[index.max(1) - 1], colours[index.min(count - 1)])
-        } else {
-            (colours[index], colours[index])
-        };
-        let slope = difference(next, value).map(|part| 0.5 * part);
-        let start = (index as f64 - offset) / count as f64;
-        let ring = rings.partition_point(|ring| ring.start <= start).max(1) - 1;
+        let ([red, green, blue], next, border) = ends(index);
+        let beyond = border >= count as f64;
+        let value = [red, green, blue, position(border.min(count as f64))];
+        let next = [
+            next[0],
+            next[1],
+            next[2],
+            if beyond { 1.0 } else { position(border + 1.0) },
+        ];
+        let slope = lanes(|lane| 0.5 * (next[lane] - value[lane]));
         let piece = Piece {
-            integral,
             value,
             slope,
-            ring: ring as u32,
+            integral,
         };
-        integral = add(integral, add(value, slope, 1.0), 1.0);
+        // The first and the last piece are halves: from the border of the table to a centre.
+        let [begin, end] = match index {
+            _ if !smooth => [0.0, 1.0],
+            0 => [0.5, 1.0],
+            _ => [0.0, if index == count { 0.5 } else { 1.0 }],
+        };
+        for lane in 0..4 {
+            let [value, slope] = [value[lane], slope[lane]].map(f64::from);
+            integral[lane] += (end - begin) * (value + slope * (end + begin));
+        }
         piece
     };
-    (0..pieces).map(piece).collect()
+    let inside = if smooth { count + 1 } else { count };
+    (0..inside + 2).map(piece).collect()
 }
 
 #[inline(always)]
-fn add(a: [f64; 3], b: [f64; 3], times: f64) -> [f64; 3] {
-    [
-        a[0] + b[0] * times,
-        a[1] + b[1] * times,
-        a[2] + b[2] * times,
-    ]
-}
-
-#[inline(always)]
-fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// Added to a number, leaves its nearest whole number in the low bits: 1.5 * 2^52.
-const ROUND: f64 = 6_755_399_441_055_744.0;
-
-/// The largest whole number up to `x`, for |x| < 2^51; faster than a call where the machine has no
-/// instruction for it, and the same everywhere.
-#[inline(always)]
-fn floor(x: f64) -> f64 {
-    let nearest = (x + ROUND) - ROUND;
-    if nearest > x { nearest - 1.0 } else { nearest }
-}
-
-/// The whole part of `x`, from 0 to 2^31.
-#[inline(always)]
-fn index(x: f64) -> usize {
-    (floor(x) + ROUND).to_bits() as u32 as usize
+fn lanes(lane: impl Fn(usize) -> f32) -> Lanes {
+    [lane(0), lane(1), lane(2), lane(3)]
 }
