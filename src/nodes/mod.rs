@@ -15,6 +15,9 @@ pub static KINDS: &[&Kind] = &[
     &surface::material::KIND,
     &cut::slice_cut::KIND,
     &output::maps::KIND,
+    &surface::mix::KIND,
+    &wood::colour_pattern::KIND,
+    &wood::pattern_lookup::KIND,
 ];
 
 /// The kind called `name`.
