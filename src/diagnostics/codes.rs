@@ -43,7 +43,8 @@ codes! {
         "A recipe is UTF-8 text. The message names the first byte that is not; a file saved as \
          UTF-16 or a binary file is recognised. Save it again as UTF-8.";
     TooLarge, "too-large",
-        "A limit on the size of a recipe was reached: 16 MiB of text, or 2000 mistakes at once. \
+        "A limit on the size of a recipe was reached: 16 MiB of text, four million \
+         values, or 2000 mistakes at once. \
          Nothing was read beyond it.";
     NotARecipe, "not-a-recipe",
         "The file is empty, holds only comments, or holds something other than one pair of \

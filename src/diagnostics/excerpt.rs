@@ -92,7 +92,9 @@ impl Excerpt {
                     ends[index] = Some(self.text.len());
                 }
             }
-            push_safe(&mut self.text, letter);
+            if at > 0 || letter != '\u{feff}' {
+                push_safe(&mut self.text, letter);
+            }
         }
         let end = self.text.len();
         for (index, label) in labels.iter().enumerate() {
@@ -110,7 +112,9 @@ impl Excerpt {
 
 /// The bytes of a line to show around byte `focus`, and whether something before and after is cut.
 fn window(line: &str, focus: usize) -> (Span, bool, bool) {
-    let start = match line[..focus].char_indices().rev().nth(BEFORE) {
+    let after = line[focus..].chars().take(WIDTH).count();
+    let before = BEFORE.max(WIDTH - after);
+    let start = match line[..focus].char_indices().rev().nth(before - 1) {
         Some((at, _)) if line.chars().nth(WIDTH).is_some() => at,
         _ => 0,
     };

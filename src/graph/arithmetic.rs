@@ -229,7 +229,7 @@ impl Parser<'_, '_, '_> {
             Value::Whole(whole) => Some((Arithmetic::Number(*whole as f64), 0)),
             _ => {
                 let message = format!(
-                    "expected a number, found parameter {} ({value_type})",
+                    "expected a number, found parameter {} of type {value_type}",
                     shown(name)
                 );
                 reader.refuse(Code::TypeMismatch, message, span, "not a number", |error| {
@@ -244,6 +244,10 @@ impl Parser<'_, '_, '_> {
         let range = self.letters();
         if self.take('(') {
             return self.call(range);
+        }
+        let name = &self.text.value[range.clone()];
+        if Function::from_name(name).is_some() && !self.linker.scope.nodes.contains_key(name) {
+            return self.expected(&format!("`(` after {}", shown(name)));
         }
         self.link(range, Type::is_number, self.input.value_type)
     }

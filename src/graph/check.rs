@@ -2,7 +2,7 @@
 
 use super::links::{Linker, Scope};
 use super::literal::Reader;
-use super::names::shown;
+use super::names::{look_alike, shown};
 use super::parameters::Parameters;
 use super::recipe::{Declaration, Recipe};
 use super::report::Report;
@@ -53,6 +53,7 @@ pub(super) fn check(
     let mut scope = Scope::default();
     for (index, node) in recipe.nodes.iter().enumerate() {
         scope.nodes.insert(node.name, NodeIndex::new(index));
+        scope.names.push(node.name);
     }
     scope.outputs = recipe.outputs.iter().map(|output| output.name).collect();
     let declarations = || {
@@ -65,13 +66,14 @@ pub(super) fn check(
     }
     let mut drafts = vec![];
     for (index, (declaration, is_output)) in declarations().enumerate() {
-        let reader = Reader::new(parameters, report, declaration.name);
+        let reader = Reader::new(parameters, report, Some(declaration.name));
         let mut linker = Linker {
             reader,
             scope: &scope,
             index: NodeIndex::new(index),
         };
-        let kind = scope.kinds[index];
+        // What comes after too many mistakes is not reported anyway.
+        let kind = scope.kinds[index].filter(|_| !linker.reader.report.is_full());
         let bindings = kind.map(|kind| bind_inputs(&mut linker, declaration, kind));
         drafts.push(Draft {
             name: declaration.name.into(),
@@ -116,14 +118,10 @@ fn find_kind(
     let Some(kind) = kinds.iter().copied().find(|kind| kind.name == word.text) else {
         let fitting = kinds.iter().filter(|kind| gives_maps(kind) == is_output);
         let message = format!("there is no kind {}", shown(&word.text));
+        let label = look_alike(&word.text, "no kind has this name");
         report.add(
             report
-                .error(
-                    Code::UnknownKind,
-                    message,
-                    word.span.clone(),
-                    "no kind has this name",
-                )
+                .error(Code::UnknownKind, message, word.span.clone(), label)
                 .in_node(declaration.name)
                 .nearest(nearest(&word.text, fitting.map(|kind| kind.name)))
                 .hint("run `yosegi nodes` for the list of kinds"),

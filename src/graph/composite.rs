@@ -1,7 +1,7 @@
 //! Literals that are made of parts: tuples, colours, lists, records and lists of names.
 
 use super::literal::{Reader, Slot, parameter_name};
-use super::names::{check_name, shown};
+use super::names::{check_name, look_alike, shown};
 use super::recipe::{report_duplicate_field, report_duplicate_name};
 use super::report::Report;
 use super::syntax::{Field, Shape, Tree};
@@ -179,7 +179,8 @@ impl Reader<'_> {
         let names: Vec<_> = inputs.iter().map(|input| input.name).collect();
         let message = format!("{} is not {owner}", shown(name));
         let span = field.name.span.clone();
-        self.refuse::<()>(Code::UnknownInput, message, span, "unknown", |error| {
+        let label = look_alike(name, "unknown");
+        self.refuse::<()>(Code::UnknownInput, message, span, label, |error| {
             let error = error.nearest(nearest(name, names.iter().copied()));
             match names.is_empty() {
                 true => error.hint("it takes no inputs"),
@@ -266,7 +267,7 @@ pub(super) fn default_literal(input: &Input, literal: &str) -> Value {
     let mut report = Report::new(&Arc::new(SourceFile::new("", literal)));
     let mut none = super::parameters::Parameters::default();
     let value = text::read(&mut report).and_then(|tree| {
-        Reader::new(&mut none, &mut report, input.name).literal(&tree, Slot::from(input))
+        Reader::new(&mut none, &mut report, None).literal(&tree, Slot::from(input))
     });
     value.unwrap_or_else(|| {
         let problems = crate::diagnostics::render_all(&report.finish());

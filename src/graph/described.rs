@@ -2,6 +2,7 @@
 
 use super::names::shown;
 use super::syntax::{Shape, Tree, Word};
+use crate::value::Unit;
 
 impl Tree {
     /// What the value is, for "expected X, found Y"; `text` is the whole recipe.
@@ -13,6 +14,9 @@ impl Tree {
         match &self.shape {
             Shape::Number => format!("number {}", shown(&text[self.span.clone()])),
             Shape::Text(_) => format!("text {}", shown(&text[self.span.clone()])),
+            Shape::Name(name) if name == "true" || name == "false" => {
+                format!("toggle {}", shown(name))
+            }
             Shape::Name(name) => format!("name {}", shown(name)),
             Shape::Record(Some(Word { text, .. }), _)
             | Shape::Tuple(Some(Word { text, .. }), _) => {
@@ -27,6 +31,14 @@ impl Tree {
             Shape::Map(entries) => counted(entries.len(), "map"),
             Shape::Other | Shape::Missing => shown(&text[self.span.clone()]),
         }
+    }
+}
+
+/// The unit of a number, in words.
+pub(super) fn described_unit(unit: Unit) -> String {
+    match unit {
+        Unit::One => "a plain number".to_owned(),
+        unit => format!("in {}", unit.symbol()),
     }
 }
 

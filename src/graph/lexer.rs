@@ -66,13 +66,19 @@ pub(super) struct Token {
 pub(super) struct Lexer<'t> {
     text: &'t str,
     at: usize,
+    /// Whether a string or a comment was not closed, so that it took the rest of the file.
+    pub(super) found_unclosed: bool,
 }
 
 impl<'t> Lexer<'t> {
     /// Starts behind the byte order mark and the attributes of the file.
     pub(super) fn new(text: &'t str, report: &mut Report) -> Lexer<'t> {
         let at = if text.starts_with('\u{feff}') { 3 } else { 0 };
-        let mut lexer = Lexer { text, at };
+        let mut lexer = Lexer {
+            text,
+            at,
+            found_unclosed: false,
+        };
         lexer.skip_space(report);
         while lexer.skip_attribute(report) {}
         lexer
@@ -118,13 +124,14 @@ impl<'t> Lexer<'t> {
             let start = self.at;
             self.at += found.length;
             if !found.is_closed {
+                self.found_unclosed = true;
                 report.add(unclosed(report, start..start + found.opening, "string"));
             }
             let text = |literal: TextLiteral| TokenKind::Text(literal.moved(start));
             return Some(found.literal.map_or(TokenKind::Other, text));
         }
         let length = number_length(rest);
-        if length > 0 {
+        if length > 0 || rest.starts_with("..") {
             self.at += length;
             return Some(self.number_or_range());
         }
@@ -209,6 +216,7 @@ impl<'t> Lexer<'t> {
             }
         }
         if depth > 0 {
+            self.found_unclosed = true;
             report.add(unclosed(report, self.at..self.at + 2, "comment"));
         }
         self.at += at;
@@ -278,7 +286,7 @@ fn number_length(text: &str) -> usize {
     let is_plain = !matches!(bytes.get(1), Some(b'x' | b'b' | b'o'));
     let belongs = |at: &usize| match bytes[*at] {
         b'.' => bytes.get(at + 1) != Some(&b'.'),
-        b'+' | b'-' => is_plain && matches!(bytes[*at - 1], b'e' | b'E'),
+        b'+' | b'-' => is_plain && unsigned[..*at].trim_end_matches('_').ends_with(['e', 'E']),
         byte => byte.is_ascii_alphanumeric() || byte == b'_',
     };
     sign + 1 + (1..bytes.len()).take_while(belongs).count()

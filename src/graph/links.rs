@@ -1,11 +1,12 @@
 //! Links: finding the node and the output, and whether the input takes what it gives.
 
+use super::described::described_unit;
 use super::literal::{Reader, Slot};
-use super::names::shown;
+use super::names::{look_alike, shown};
 use super::{Link, Source};
 use crate::diagnostics::{Code, Span, nearest};
 use crate::node::{Input, Kind, Output, Varies};
-use crate::value::Type;
+use crate::value::{Type, Unit};
 use petgraph::graph::NodeIndex;
 use std::collections::HashMap;
 
@@ -14,6 +15,8 @@ use std::collections::HashMap;
 pub(super) struct Scope<'t> {
     /// The index of each node.
     pub(super) nodes: HashMap<&'t str, NodeIndex>,
+    /// The names of nodes, in the order of the file.
+    pub(super) names: Vec<&'t str>,
     /// The kind of each node and output; `None` if there is no such kind, which is reported.
     pub(super) kinds: Vec<Option<&'static Kind>>,
     /// The names of outputs, to which no link leads.
@@ -89,17 +92,14 @@ impl Linker<'_, '_> {
             return Some(());
         }
         if let Some((expected, given)) = units(expected, given) {
-            let message = format!(
-                "{} is in {expected}, {} in {given}",
-                shown(input.name),
-                shown(text)
-            );
-            let label = format!("expected {expected}");
+            let (name, text) = (shown(input.name), shown(text));
+            let label = format!("is {}", described_unit(given));
+            let message = format!("{name} is {}, {text} {label}", described_unit(expected));
             return self
                 .reader
                 .refuse(Code::UnitMismatch, message, span, label, |error| {
-                    error.expected(expected, given).hint(
-                    "units are not converted; arithmetic such as `\"= 2 * node.output\"` is in the \
+                    error.expected(expected.symbol(), given.symbol()).hint(
+"units are not converted; arithmetic such as `\"= 2 * node.output\"` is in the \
                      input's unit",
                 )
                 });
@@ -177,15 +177,12 @@ impl Linker<'_, '_> {
 
     fn refuse_unknown_node<T>(&mut self, text: &str, node: &str, span: Span) -> Option<T> {
         let message = format!("there is no node {}", shown(node));
-        let names = nearest(node, self.scope.nodes.keys().copied());
+        let names = nearest(node, self.scope.names.iter().copied());
         let is_output = self.scope.outputs.contains(&node);
         let is_number = text.parse::<f64>().is_ok();
-        self.reader.refuse(
-            Code::UnknownNode,
-            message,
-            span,
-            "no node has this name",
-            |error| {
+        let label = look_alike(node, "no node has this name");
+        self.reader
+            .refuse(Code::UnknownNode, message, span, label, |error| {
                 let error = error.nearest(names);
                 match (is_output, is_number) {
                     (true, _) => {
@@ -194,8 +191,7 @@ impl Linker<'_, '_> {
                     (_, true) => error.hint("write numbers without quotes"),
                     _ => error,
                 }
-            },
-        )
+            })
     }
 
     fn refuse_unknown_output<T>(
@@ -231,11 +227,11 @@ impl Linker<'_, '_> {
 }
 
 /// The units of two types that differ in nothing else.
-fn units(expected: Type, given: Type) -> Option<(&'static str, &'static str)> {
+fn units(expected: Type, given: Type) -> Option<(Unit, Unit)> {
     match (expected, given) {
         (Type::Number(expected), Type::Number(given))
         | (Type::Vector(expected), Type::Vector(given))
-        | (Type::Pair(expected), Type::Pair(given)) => Some((expected.symbol(), given.symbol())),
+        | (Type::Pair(expected), Type::Pair(given)) => Some((expected, given)),
         _ => None,
     }
 }

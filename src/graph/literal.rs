@@ -1,13 +1,13 @@
 //! Literals: values that a recipe writes out, read as the type of their input.
 
-use super::described::described_range;
+use super::described::{described_range, described_unit};
 use super::names::{is_name, shown};
 use super::number::{self, Written};
 use super::parameters::Parameters;
 use super::report::Report;
 use super::syntax::{Shape, Tree};
 use crate::diagnostics::{Code, Diagnostic, Span, nearest};
-use crate::value::{Type, Value};
+use crate::value::{Type, Unit, Value};
 
 /// What a literal is for.
 #[derive(Clone, Copy, Debug)]
@@ -34,8 +34,8 @@ pub(super) struct Reader<'c> {
     pub(super) parameters: &'c mut Parameters,
     /// Where mistakes go.
     pub(super) report: &'c mut Report,
-    /// The name of the node.
-    pub(super) node: &'c str,
+    /// The name of the node; `None` in a parameter.
+    pub(super) node: Option<&'c str>,
 }
 
 /// What a text is at its beginning: `$name` a parameter, `$$` a dollar sign.
@@ -44,11 +44,11 @@ pub(super) fn parameter_name(text: &str) -> Option<&str> {
 }
 
 impl<'c> Reader<'c> {
-    /// A reader for the node called `node`.
+    /// A reader for the node called `node`, or for a parameter.
     pub(super) fn new(
         parameters: &'c mut Parameters,
         report: &'c mut Report,
-        node: &'c str,
+        node: Option<&'c str>,
     ) -> Reader<'c> {
         Reader {
             parameters,
@@ -59,6 +59,9 @@ impl<'c> Reader<'c> {
 
     /// The value of a literal or of a parameter.
     pub(super) fn literal(&mut self, tree: &Tree, slot: Slot<'_>) -> Option<Value> {
+        if self.report.is_full() {
+            return None;
+        }
         if let Shape::Text(text) = &tree.shape
             && let Some(name) = parameter_name(&text.value)
         {
@@ -114,10 +117,8 @@ impl<'c> Reader<'c> {
         label: impl Into<String>,
         complete: impl FnOnce(Diagnostic) -> Diagnostic,
     ) -> Option<T> {
-        let error = self
-            .report
-            .error(code, message, span, label)
-            .in_node(self.node);
+        let mut error = self.report.error(code, message, span, label);
+        error.node = self.node.map(str::to_owned);
         self.report.add(complete(error));
         None
     }
@@ -288,7 +289,7 @@ impl<'c> Reader<'c> {
             }
             (Value::Number(_) | Value::Whole(_), Type::Number(wanted))
             | (Value::Vector(_), Type::Vector(wanted)) => {
-                return self.refuse_unit(name, span, slot, (unit.symbol(), wanted.symbol()));
+                return self.refuse_unit(name, span, slot, (unit, wanted));
             }
             (Value::Text(text), Type::Choice(names)) => {
                 return self.choose(&text, span, slot, names);
@@ -338,13 +339,16 @@ impl<'c> Reader<'c> {
         name: &str,
         span: Span,
         slot: Slot<'_>,
-        (found, expected): (&str, &str),
+        (found, expected): (Unit, Unit),
     ) -> Option<Value> {
         let (input, name) = (shown(slot.name), shown(name));
-        let message = format!("{input} is in {expected}, parameter {name} in {found}");
-        let label = format!("expected {expected}");
+        let label = format!("is {}", described_unit(found));
+        let message = format!(
+            "{input} is {}, parameter {name} {label}",
+            described_unit(expected)
+        );
         self.refuse(Code::UnitMismatch, message, span, label, |error| {
-            error.expected(expected, found)
+            error.expected(expected.symbol(), found.symbol())
         })
     }
 
@@ -357,7 +361,7 @@ impl<'c> Reader<'c> {
     ) -> Option<Value> {
         let (input, expected) = (shown(slot.name), slot.value_type.to_string());
         let message = format!(
-            "expected {expected} for {input}, found parameter {} ({found})",
+            "expected {expected} for {input}, found parameter {} of type {found}",
             shown(name)
         );
         let label = format!("expected {expected}");

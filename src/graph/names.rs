@@ -39,6 +39,14 @@ pub(super) fn check_name(report: &mut Report, what: &str, name: &str, span: Span
     );
 }
 
+/// The label of a name that is not known: the letter that makes it another, or `otherwise`.
+pub(super) fn look_alike(name: &str, otherwise: &str) -> String {
+    match name.chars().find(|letter| !letter.is_ascii()) {
+        Some(letter) => format!("holds {}", shown_letter(letter)),
+        None => otherwise.to_owned(),
+    }
+}
+
 /// Whether Windows would take the name for a device.
 pub(super) fn is_reserved(name: &str) -> bool {
     let name = name.to_lowercase();

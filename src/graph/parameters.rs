@@ -1,6 +1,5 @@
 //! The parameters of a recipe: their declarations, what the caller sets, and what refers to them.
 
-use super::described::described_range;
 use super::literal::{Reader, Slot};
 use super::names::shown;
 use super::recipe::{Declaration, report_duplicate_field};
@@ -118,7 +117,7 @@ impl Parameters {
                 value_type,
                 range: declared.range,
             };
-            declared.value = Reader::new(&mut none, &mut report, name).literal(&tree, slot);
+            declared.value = Reader::new(&mut none, &mut report, None).literal(&tree, slot);
         } else if !report.has_errors() {
             let message = format!(
                 "expected {value_type} for parameter {}, found nothing",
@@ -144,22 +143,23 @@ fn quoted(value_type: Type, literal: &str) -> String {
 impl Declared {
     fn read(report: &mut Report, declaration: &Declaration<'_>) -> Declared {
         let fields = Fields::find(report, declaration);
-        let unit = fields
-            .unit
-            .and_then(|tree| read_unit(report, tree))
-            .unwrap_or(Unit::One);
+        let unit = match fields.unit {
+            Some(tree) => read_unit(report, tree),
+            None => Some(Unit::One),
+        };
         let mut declared = Declared {
             name: declaration.name.to_owned(),
             span: declaration.span.clone(),
-            value_type: type_of(report, declaration, unit),
-            unit,
+            value_type: type_of(report, declaration, unit.unwrap_or(Unit::One))
+                .filter(|_| unit.is_some()),
+            unit: unit.unwrap_or(Unit::One),
             value: None,
             range: None,
             about: String::new(),
             is_used: false,
         };
         let mut none = Parameters::default();
-        let mut reader = Reader::new(&mut none, report, declaration.name);
+        let mut reader = Reader::new(&mut none, report, None);
         let read = |reader: &mut Reader<'_>, tree: Option<&Tree>, name, value_type, range| {
             reader.literal(
                 tree?,
@@ -177,11 +177,16 @@ impl Declared {
         let Some(value_type) = declared.value_type else {
             return declared;
         };
-        let range = read(&mut reader, fields.range, "range", Type::Pair(unit), None);
-        if let Some(Value::Pair([low, high])) = range {
-            declared.range = Some((low, high));
+        let range = read(
+            &mut reader,
+            fields.range,
+            "range",
+            Type::Pair(declared.unit),
+            None,
+        );
+        if let (Some(Value::Pair([low, high])), Some(tree)) = (range, fields.range) {
+            declared.range = check_range(reader.report, (low, high), tree, value_type);
         }
-        check_range(reader.report, declared.range, fields.range, value_type);
         declared.value = read(
             &mut reader,
             fields.default,
@@ -292,7 +297,7 @@ fn read_unit(report: &mut Report, tree: &Tree) -> Option<Unit> {
     let known = Unit::ALL.map(Unit::symbol);
     let written = match &tree.shape {
         Shape::Text(text) => text.value.clone(),
-        _ => tree.described(&report.source.text),
+        _ => report.source.text[tree.span.clone()].to_owned(),
     };
     let unit = Unit::from_symbol(&written);
     if unit.is_none() {
@@ -307,24 +312,20 @@ fn read_unit(report: &mut Report, tree: &Tree) -> Option<Unit> {
     unit
 }
 
-/// A range is for numbers, and its smaller end comes first.
+/// The range, if it is for numbers and its smaller end comes first.
 fn check_range(
     report: &mut Report,
-    range: Option<(f64, f64)>,
-    tree: Option<&Tree>,
+    (low, high): (f64, f64),
+    tree: &Tree,
     value_type: Type,
-) {
-    let (Some((low, high)), Some(tree)) = (range, tree) else {
-        return;
-    };
+) -> Option<(f64, f64)> {
     let label = match value_type {
-        Type::Number(_) | Type::Whole | Type::Vector(_) | Type::Colour if low > high => {
-            format!("holds no number {}", described_range((low, high)))
-        }
         Type::Toggle | Type::Text => "a range is for numbers".to_owned(),
-        _ => return,
+        _ if low > high => format!("{low} is larger than {high}"),
+        _ => return Some((low, high)),
     };
     let message = "the range of a parameter is two numbers, the smaller first";
     let span = tree.span.clone();
     report.add(report.error(Code::InvalidRange, message, span, label));
+    None
 }

@@ -1,6 +1,6 @@
 //! The top level of a recipe: which nodes, outputs and parameters it declares.
 
-use super::names::{check_name, is_reserved, shown};
+use super::names::{check_name, is_reserved, look_alike, shown};
 use super::report::Report;
 use super::syntax::{Entry, Field, Shape, Tree, Word};
 use crate::diagnostics::{Code, Span, nearest};
@@ -109,7 +109,12 @@ fn read_field<'t>(report: &mut Report, recipe: &mut Recipe<'t>, field: &'t Field
             let span = field.name.span.clone();
             report.add(
                 report
-                    .error(Code::UnknownField, message, span, "not a field of a recipe")
+                    .error(
+                        Code::UnknownField,
+                        message,
+                        span,
+                        look_alike(unknown, "not a field of a recipe"),
+                    )
                     .nearest(nearest(unknown, FIELDS))
                     .hint(format!("the fields of a recipe are {}", FIELDS.join(", "))),
             );
@@ -151,7 +156,7 @@ fn declarations<'t>(report: &mut Report, tree: &'t Tree, what: &str) -> Vec<Decl
     let mut seen: HashMap<&str, Span> = HashMap::new();
     let mut declarations = vec![];
     for entry in entries {
-        let Some(name) = key(report, entry, &format!("a {what}")) else {
+        let Some(name) = key(report, entry, &with_article(what)) else {
             continue;
         };
         let span = entry.key.span.clone();
@@ -223,16 +228,25 @@ fn instance<'t>(
         }
         _ => tree.described(&report.source.text),
     };
-    let expected = format!("a {what} `kind(name: value)`");
+    let expected = format!("{} `kind(name: value)`", with_article(what));
     let message = format!("expected {expected}, found {found}");
     let error = report.error(
         Code::NotANode,
         message,
         tree.span.clone(),
-        format!("not a {what}"),
+        format!("not {}", with_article(what)),
     );
     report.add(error.expected(expected, found));
     None
+}
+
+fn with_article(what: &str) -> String {
+    let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {what}")
 }
 
 /// Names of outputs become names of files.

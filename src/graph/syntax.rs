@@ -7,10 +7,13 @@
 
 use super::lexer::{Bracket, Lexer, Token, TokenKind, unclosed};
 use super::names::{shown, shown_letter};
+use super::number;
 use super::report::Report;
 use super::text_literal::TextLiteral;
 use crate::diagnostics::{Code, Span};
 
+/// Values that are read.
+const VALUES: usize = 4_000_000;
 /// Levels of brackets that are read.
 pub(super) const DEPTH: usize = 64;
 
@@ -90,6 +93,7 @@ pub(super) fn parse(report: &mut Report) -> Option<Tree> {
         token,
         ahead,
         open: vec![],
+        values: 0,
         end: 0,
         report,
         gave_up: false,
@@ -103,6 +107,8 @@ struct Parser<'t, 'r> {
     ahead: Token,
     /// The brackets around the token.
     open: Vec<Bracket>,
+    /// Values that have been read.
+    values: usize,
     /// Where the last taken token ended.
     end: usize,
     report: &'r mut Report,
@@ -172,13 +178,17 @@ impl Parser<'_, '_> {
 
     fn value(&mut self) -> Tree {
         let start = self.token.span.start;
+        self.values += 1;
+        if self.values > VALUES {
+            self.refuse_many();
+        }
         let shape = match &self.token.kind {
             TokenKind::Open(bracket) => {
                 let bracket = *bracket;
                 self.bracket(bracket, None)
             }
             TokenKind::Name(_) => self.name(),
-            TokenKind::Number => self.leaf(Shape::Number),
+            TokenKind::Number => self.number(),
             TokenKind::Other => self.leaf(Shape::Other),
             TokenKind::Text(text) => {
                 let shape = Shape::Text(text.clone());
@@ -196,6 +206,31 @@ impl Parser<'_, '_> {
             shape,
             span: start..self.end,
         }
+    }
+
+    fn refuse_many(&mut self) {
+        if !self.gave_up {
+            let message = format!("a recipe has at most {VALUES} values");
+            let span = self.token.span.clone();
+            let error = self
+                .report
+                .error(Code::TooLarge, message, span, "one too many");
+            self.report.add(error);
+        }
+        self.give_up();
+    }
+
+    fn number(&mut self) -> Shape {
+        let span = self.token.span.clone();
+        let text = &self.report.source.text[span.clone()];
+        if number::read(text).is_none() {
+            let message = format!("{} is not a number", shown(text));
+            self.report.add(
+                self.report
+                    .error(Code::Syntax, message, span, "not a number"),
+            );
+        }
+        self.leaf(Shape::Number)
     }
 
     fn leaf(&mut self, shape: Shape) -> Shape {
@@ -295,9 +330,14 @@ impl Parser<'_, '_> {
                     return items;
                 }
                 TokenKind::Close(closing) if !self.open.contains(&closing) => {
-                    self.expected("a value");
+                    self.refuse_closing(bracket, opening);
                     self.advance();
-                    continue;
+                    return items;
+                }
+                TokenKind::Name(_) if self.leaves_list(bracket) => {
+                    self.refuse_unclosed(bracket, opening);
+                    self.token.follows_mistake = true;
+                    return items;
                 }
                 TokenKind::Close(_) | TokenKind::End => {
                     self.refuse_unclosed(bracket, opening);
@@ -312,6 +352,28 @@ impl Parser<'_, '_> {
             }
             self.separator();
         }
+    }
+
+    /// Whether a field of the record around a list begins here.
+    fn leaves_list(&self, bracket: Bracket) -> bool {
+        let around = self.open.iter().rev().nth(1);
+        bracket == Bracket::Square
+            && self.ahead.kind == TokenKind::Colon
+            && around == Some(&Bracket::Round)
+    }
+
+    /// Reports a bracket that closes another sort than the one that is open.
+    fn refuse_closing(&mut self, bracket: Bracket, opening: &Span) {
+        let (expected, found) = (shown_letter(bracket.close()), self.found());
+        let message = format!("expected {expected}, found {found}");
+        let label = format!("expected {expected}");
+        let span = self.token.span.clone();
+        let error = self.report.error(Code::Syntax, message, span, label);
+        self.report.add(
+            error
+                .expected(expected, found)
+                .and_at(opening.clone(), "opened here"),
+        );
     }
 
     /// A comma, unless the bracket closes.
@@ -338,7 +400,8 @@ impl Parser<'_, '_> {
 
     /// Reports the innermost bracket that is not closed; at the end of the file it stands for all.
     fn refuse_unclosed(&mut self, bracket: Bracket, opening: &Span) {
-        if self.gave_up {
+        let is_explained = self.token.kind == TokenKind::End && self.lexer.found_unclosed;
+        if self.gave_up || is_explained {
             return;
         }
         let what = format!("`{}`", bracket.open());

@@ -116,3 +116,50 @@ fn byte_of(text: &str, position: ron::error::Position) -> usize {
     let letter = line.char_indices().nth(position.col.saturating_sub(1));
     before + letter.map_or(line.len(), |(at, _)| at)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SEEDS: [&str; 4] = [
+        "(a: 1, b: [(1, 2.5e-3), (-0x1F, .5)], c: {\"x\": kind(n: \"t\\n\"), \"y\": other()})",
+        "// c\n(n: { /* a /* b */ */ \"k\": f(v: r#\"raw \"q\" \"#, w: 'x', z: 0..=5), })",
+        "#![enable(unwrap_newtypes)]\r\n[Some(3), None, true, b\"b\", (), {}, [], -inf, 1_000u32]",
+        "(r#type: \"\\u{e4}\\x41\\\n   on\", v: (1, (2, (3,),),), tail: name,)",
+    ];
+
+    /// A text with a few letters replaced, doubled or taken away; `seed` decides which.
+    fn mutated(text: &str, mut seed: u64) -> String {
+        let mut letters: Vec<char> = text.chars().collect();
+        let mut draw = |end: usize| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 33) as usize % end.max(1)
+        };
+        for _ in 0..1 + draw(3) {
+            let at = draw(letters.len());
+            match draw(3) {
+                0 => letters[at] = ['(', ')', '"', ',', ':', '1', 'e', '_', '#', '.'][draw(10)],
+                1 => letters.insert(at, letters[draw(letters.len())]),
+                _ => drop(letters.remove(at)),
+            }
+        }
+        letters.into_iter().collect()
+    }
+
+    /// Our tree must accept what `ron` accepts, or a valid recipe would be refused.
+    #[test]
+    fn what_ron_accepts_is_read() {
+        let mut accepted = 0;
+        for (seed, text) in SEEDS.iter().cycle().enumerate().take(20_000) {
+            let text = mutated(text, seed as u64);
+            let mut report = Report::new(&Arc::new(SourceFile::new("a.ron", &*text)));
+            let tree = syntax::parse(&mut report);
+            if ron::from_str::<serde::de::IgnoredAny>(&text).is_ok() {
+                accepted += 1;
+                let problems = crate::diagnostics::render_all(&report.finish());
+                assert!(tree.is_some() && problems.is_empty(), "{text}\n{problems}");
+            }
+        }
+        assert!(accepted > 1000, "{accepted}");
+    }
+}
