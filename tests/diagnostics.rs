@@ -3,6 +3,8 @@
 //! `tests/diagnostics/NAME.ron` gives `NAME.txt`; `YOSEGI_BLESS=1` writes the texts anew. A first line
 //! `// set: name=value` sets a parameter, and `// render` asks for an output.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

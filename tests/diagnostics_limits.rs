@@ -1,5 +1,7 @@
 //! What no recipe can do to the reader: crash it, stop it, or fill the memory.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use std::fmt::Write;
 use std::io;
 use std::path::Path;

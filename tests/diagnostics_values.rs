@@ -1,5 +1,7 @@
 //! What a valid recipe means: the values, links and domains of its graph.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use yosegi::diagnostics::{SourceFile, render_all};
 use yosegi::graph::{Arithmetic, Function, Graph, Operator, Settings, Source, load_text};
 use yosegi::nodes::KINDS;

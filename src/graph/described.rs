@@ -1,7 +1,7 @@
 //! How values of a recipe are described in messages.
 
 use super::names::shown;
-use super::syntax::{Shape, Tree, Word};
+use super::tree::{Shape, Tree, Word};
 use crate::value::Unit;
 
 impl Tree {

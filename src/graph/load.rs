@@ -1,13 +1,14 @@
 //! Reading a recipe: from its path or its text to a checked graph.
 
+use super::check::{self, Draft};
 use super::parameters::Parameters;
 use super::report::Report;
-use super::{Graph, check, domains, order, recipe, text};
+use super::{Graph, Node, domains, order, recipe, text};
 use crate::diagnostics::{Code, Diagnostic, SourceFile};
 use crate::node::Kind;
 use crate::nodes::KINDS;
 use crate::world::World;
-use petgraph::graph::NodeIndex;
+use petgraph::graph::{DiGraph, NodeIndex};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -44,7 +45,7 @@ pub fn load(
         diagnostic.source = Some(Arc::new(SourceFile::new(path, "")));
         vec![diagnostic]
     })?;
-    let source = text::decode(path, bytes).map_err(|diagnostic| vec![diagnostic])?;
+    let source = text::decode(path, bytes).map_err(|diagnostic| vec![*diagnostic])?;
     load_source(KINDS, &source, settings)
 }
 
@@ -107,32 +108,36 @@ fn load_source(
         diagnostics.splice(0..0, set_problems);
         return Err(diagnostics);
     }
-    let outputs = drafts
-        .iter()
-        .enumerate()
-        .filter(|(_, draft)| draft.is_output);
-    let outputs = outputs.map(|(index, _)| NodeIndex::new(index)).collect();
-    let named = recipe.nodes.iter().enumerate();
-    let by_name = named
-        .map(|(index, node)| (node.name.to_owned(), NodeIndex::new(index)))
-        .collect();
-    let mut nodes = drafts.into_iter().filter_map(check::Draft::finish);
     let graph = Graph {
         source: Arc::clone(source),
         about: recipe.about,
         seed: settings.seed.unwrap_or(recipe.seed),
         parameters: parameters.finish(),
-        nodes: edges.map(
-            |_, ()| nodes.next().expect("a draft without errors is a node"),
-            |_, ()| (),
-        ),
-        outputs,
-        by_name,
+        outputs: indices(&drafts, true).map(|(index, _)| index).collect(),
+        by_name: indices(&drafts, false)
+            .map(|(index, draft)| (draft.name.to_string(), index))
+            .collect(),
+        nodes: with_nodes(&edges, drafts),
     };
     Ok(Loaded {
         graph,
         warnings: diagnostics,
     })
+}
+
+/// The outputs, or the nodes that are none.
+fn indices(drafts: &[Draft], are_outputs: bool) -> impl Iterator<Item = (NodeIndex, &Draft)> {
+    let all = drafts.iter().enumerate();
+    all.filter(move |(_, draft)| draft.is_output == are_outputs)
+        .map(|(index, draft)| (NodeIndex::new(index), draft))
+}
+
+fn with_nodes(edges: &DiGraph<(), ()>, drafts: Vec<Draft>) -> DiGraph<Node, ()> {
+    let mut nodes = drafts.into_iter().filter_map(Draft::finish);
+    edges.map(
+        |_, ()| nodes.next().expect("a draft without errors is a node"),
+        |_, ()| (),
+    )
 }
 
 fn report_empty(report: &mut Report) {

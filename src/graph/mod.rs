@@ -19,10 +19,12 @@ mod number;
 mod order;
 mod parameters;
 mod recipe;
+mod reference;
 mod report;
 mod syntax;
 mod text;
 mod text_literal;
+mod tree;
 
 pub use load::{Loaded, Settings, load, load_text, load_text_with, no_output};
 

@@ -4,7 +4,7 @@ use super::literal::{Reader, Slot};
 use super::names::shown;
 use super::recipe::{Declaration, report_duplicate_field};
 use super::report::Report;
-use super::syntax::{Field, Shape, Tree};
+use super::tree::{Field, Shape, Tree};
 use super::{Parameter, text};
 use crate::diagnostics::{Code, Diagnostic, SourceFile, Span, nearest};
 use crate::value::{Type, Unit, Value};
@@ -158,9 +158,15 @@ impl Declared {
             about: String::new(),
             is_used: false,
         };
+        declared.read_fields(report, &fields);
+        declared
+    }
+
+    /// Reads what the declaration says; what is wrong stays as it is.
+    fn read_fields(&mut self, report: &mut Report, fields: &Fields<'_>) {
         let mut none = Parameters::default();
         let mut reader = Reader::new(&mut none, report, None);
-        let read = |reader: &mut Reader<'_>, tree: Option<&Tree>, name, value_type, range| {
+        let mut read = |tree: Option<&Tree>, name, value_type, range| {
             reader.literal(
                 tree?,
                 Slot {
@@ -170,31 +176,25 @@ impl Declared {
                 },
             )
         };
-        if let Some(Value::Text(about)) = read(&mut reader, fields.about, "about", Type::Text, None)
-        {
-            declared.about = about;
+        if let Some(Value::Text(about)) = read(fields.about, "about", Type::Text, None) {
+            self.about = about;
         }
-        let Some(value_type) = declared.value_type else {
-            return declared;
+        let Some(value_type) = self.value_type else {
+            return;
         };
-        let range = read(
-            &mut reader,
-            fields.range,
-            "range",
-            Type::Pair(declared.unit),
-            None,
-        );
-        if let (Some(Value::Pair([low, high])), Some(tree)) = (range, fields.range) {
-            declared.range = check_range(reader.report, (low, high), tree, value_type);
+        let range = read(fields.range, "range", Type::Pair(self.unit), None);
+        self.value = read(fields.default, "default", value_type, None);
+        if let (Some(Value::Pair(range)), Some(tree)) = (range, fields.range) {
+            self.range = check_range(report, range.into(), tree, value_type);
         }
-        declared.value = read(
-            &mut reader,
-            fields.default,
-            "default",
-            value_type,
-            declared.range,
-        );
-        declared
+        if let (Some(value), Some(tree)) = (&self.value, fields.default) {
+            let slot = Slot {
+                name: "default",
+                value_type,
+                range: self.range,
+            };
+            Reader::new(&mut none, report, None).all_in_range(value, tree.span.clone(), slot);
+        }
     }
 
     fn finish(self) -> Option<Parameter> {

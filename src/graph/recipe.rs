@@ -2,7 +2,7 @@
 
 use super::names::{check_name, is_reserved, look_alike, shown};
 use super::report::Report;
-use super::syntax::{Entry, Field, Shape, Tree, Word};
+use super::tree::{Entry, Field, Shape, Tree, Word};
 use crate::diagnostics::{Code, Span, nearest};
 use std::collections::HashMap;
 

@@ -1,7 +1,8 @@
 //! From the bytes of a file to a tree that is valid RON.
 
 use super::report::Report;
-use super::syntax::{self, Tree};
+use super::syntax;
+use super::tree::Tree;
 use crate::diagnostics::{Code, Diagnostic, SourceFile};
 use std::path::Path;
 use std::sync::Arc;
@@ -10,9 +11,9 @@ use std::sync::Arc;
 const LARGEST: usize = 16 << 20;
 
 /// The text of a file, if it is UTF-8 and not too large.
-pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<Arc<SourceFile>, Diagnostic> {
+pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<Arc<SourceFile>, Box<Diagnostic>> {
     if bytes.len() > LARGEST {
-        return Err(about_file(path, Code::TooLarge, too_large(bytes.len())));
+        return Err(about_file(path, Code::TooLarge, too_large(bytes.len())).into());
     }
     let encoding = match bytes.as_slice() {
         [0xff, 0xfe, ..] | [1..=255, 0, ..] => Some("UTF-16 (little-endian)"),
@@ -23,15 +24,15 @@ pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<Arc<SourceFile>, Dia
         let message = format!("expected UTF-8 text, found {encoding} from byte 0 on");
         return Err(about_file(path, Code::NotText, message)
             .expected("UTF-8 text", encoding)
-            .hint("save the file as UTF-8"));
+            .hint("save the file as UTF-8")
+            .into());
     }
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Arc::new(SourceFile::new(path, text))),
-        Err(error) => Err(not_utf8(
-            path,
-            error.as_bytes(),
-            error.utf8_error().valid_up_to(),
-        )),
+        Err(error) => {
+            let valid = error.utf8_error().valid_up_to();
+            Err(not_utf8(path, error.as_bytes(), valid).into())
+        }
     }
 }
 

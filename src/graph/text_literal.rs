@@ -119,7 +119,7 @@ fn unescape(text: &str) -> String {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find('\\') {
-        bytes.extend_from_slice(rest[..at].as_bytes());
+        bytes.extend_from_slice(&rest.as_bytes()[..at]);
         let (escape, length) = escape(&rest[at + 1..]);
         bytes.extend_from_slice(&escape);
         rest = &rest[at + 1 + length..];

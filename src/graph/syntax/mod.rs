@@ -5,76 +5,19 @@
 //! once, and the tree has what could be understood. It accepts more than RON does; [`super::text`]
 //! asks the `ron` crate about the rest.
 
-use super::lexer::{Bracket, Lexer, Token, TokenKind, unclosed};
-use super::names::{shown, shown_letter};
+mod mistakes;
+
+use super::lexer::{Bracket, Lexer, Token, TokenKind};
+use super::names::shown;
 use super::number;
 use super::report::Report;
-use super::text_literal::TextLiteral;
+use super::tree::{Entry, Field, Shape, Tree, Word};
 use crate::diagnostics::{Code, Span};
 
 /// Values that are read.
 const VALUES: usize = 4_000_000;
 /// Levels of brackets that are read.
 pub(super) const DEPTH: usize = 64;
-
-/// A value and the bytes it covers.
-#[derive(Clone, Debug)]
-pub(super) struct Tree {
-    /// What it is.
-    pub(super) shape: Shape,
-    /// Where it is, from its first to its last letter.
-    pub(super) span: Span,
-}
-
-/// What a value looks like; types come later.
-#[derive(Clone, Debug)]
-pub(super) enum Shape {
-    /// A number with its sign and suffix.
-    Number,
-    /// Text in quotes.
-    Text(TextLiteral),
-    /// A bare name: `base_color`, `true`.
-    Name(String),
-    /// Values in parentheses, perhaps with a name before: `(1, 2)`.
-    Tuple(Option<Word>, Vec<Tree>),
-    /// Fields in parentheses, perhaps with a name before: `noise(scale: 2)`.
-    Record(Option<Word>, Vec<Field>),
-    /// Values in brackets.
-    List(Vec<Tree>),
-    /// Keys and values in braces.
-    Map(Vec<Entry>),
-    /// Valid RON that no recipe uses: characters, bytes, ranges.
-    Other,
-    /// A value was expected and is missing; reported.
-    Missing,
-}
-
-/// A bare name and where it is.
-#[derive(Clone, Debug)]
-pub(super) struct Word {
-    /// The name.
-    pub(super) text: String,
-    /// Where it is.
-    pub(super) span: Span,
-}
-
-/// `name: value`
-#[derive(Clone, Debug)]
-pub(super) struct Field {
-    /// The name.
-    pub(super) name: Word,
-    /// The value.
-    pub(super) value: Tree,
-}
-
-/// `key: value`
-#[derive(Clone, Debug)]
-pub(super) struct Entry {
-    /// The key.
-    pub(super) key: Tree,
-    /// The value.
-    pub(super) value: Tree,
-}
 
 /// An item between parentheses.
 enum Item {
@@ -152,30 +95,6 @@ impl Parser<'_, '_> {
         self.token = self.ahead.clone();
     }
 
-    /// Reports that something else was expected than the token.
-    fn expected(&mut self, what: &str) {
-        if self.gave_up || self.token.follows_mistake {
-            return;
-        }
-        let found = self.found();
-        let message = format!("expected {what}, found {found}");
-        let label = format!("expected {what}");
-        let span = self.token.span.clone();
-        let error = self.report.error(Code::Syntax, message, span, label);
-        self.report.add(error.expected(what, found));
-    }
-
-    fn found(&self) -> String {
-        match &self.token.kind {
-            TokenKind::Open(bracket) => shown_letter(bracket.open()),
-            TokenKind::Close(bracket) => shown_letter(bracket.close()),
-            TokenKind::Colon => "`:`".to_owned(),
-            TokenKind::Comma => "`,`".to_owned(),
-            TokenKind::End => "the end of the file".to_owned(),
-            _ => shown(&self.report.source.text[self.token.span.clone()]),
-        }
-    }
-
     fn value(&mut self) -> Tree {
         let start = self.token.span.start;
         self.values += 1;
@@ -206,18 +125,6 @@ impl Parser<'_, '_> {
             shape,
             span: start..self.end,
         }
-    }
-
-    fn refuse_many(&mut self) {
-        if !self.gave_up {
-            let message = format!("a recipe has at most {VALUES} values");
-            let span = self.token.span.clone();
-            let error = self
-                .report
-                .error(Code::TooLarge, message, span, "one too many");
-            self.report.add(error);
-        }
-        self.give_up();
     }
 
     fn number(&mut self) -> Shape {
@@ -278,18 +185,6 @@ impl Parser<'_, '_> {
         shape
     }
 
-    /// Reports brackets that are too deep and skips to the end of the file.
-    fn refuse_depth(&mut self) {
-        if !self.gave_up {
-            let message = format!("brackets are nested more than {DEPTH} levels deep");
-            let span = self.token.span.clone();
-            let label = format!("this is level {}", DEPTH + 1);
-            self.report
-                .add(self.report.error(Code::NestedTooDeep, message, span, label));
-        }
-        self.give_up();
-    }
-
     fn parentheses(&mut self, name: Option<Word>, opening: &Span) -> Shape {
         let items = self.items(Bracket::Round, opening, Self::item);
         let is_record = items.iter().any(|item| matches!(item, Item::Field(_)));
@@ -305,18 +200,6 @@ impl Parser<'_, '_> {
             Shape::Record(name, fields)
         } else {
             Shape::Tuple(name, values)
-        }
-    }
-
-    fn refuse_value_among_fields(&mut self, value: &Tree) {
-        if !matches!(value.shape, Shape::Missing) {
-            let span = value.span.clone();
-            let found = shown(&self.report.source.text[span.clone()]);
-            let message = format!("expected `name: value`, found {found}");
-            let error = self
-                .report
-                .error(Code::Syntax, message, span, "this has no name");
-            self.report.add(error.expected("`name: value`", found));
         }
     }
 
@@ -362,20 +245,6 @@ impl Parser<'_, '_> {
             && around == Some(&Bracket::Round)
     }
 
-    /// Reports a bracket that closes another sort than the one that is open.
-    fn refuse_closing(&mut self, bracket: Bracket, opening: &Span) {
-        let (expected, found) = (shown_letter(bracket.close()), self.found());
-        let message = format!("expected {expected}, found {found}");
-        let label = format!("expected {expected}");
-        let span = self.token.span.clone();
-        let error = self.report.error(Code::Syntax, message, span, label);
-        self.report.add(
-            error
-                .expected(expected, found)
-                .and_at(opening.clone(), "opened here"),
-        );
-    }
-
     /// A comma, unless the bracket closes.
     fn separator(&mut self) {
         match self.token.kind {
@@ -396,23 +265,6 @@ impl Parser<'_, '_> {
                 self.report.add(error.expected("`,`", found));
             }
         }
-    }
-
-    /// Reports the innermost bracket that is not closed; at the end of the file it stands for all.
-    fn refuse_unclosed(&mut self, bracket: Bracket, opening: &Span) {
-        let is_explained = self.token.kind == TokenKind::End && self.lexer.found_unclosed;
-        if self.gave_up || is_explained {
-            return;
-        }
-        let what = format!("`{}`", bracket.open());
-        let mut error = unclosed(self.report, opening.clone(), &what);
-        if self.token.kind == TokenKind::End {
-            self.gave_up = true;
-        } else {
-            let label = format!("expected `{}` before this", bracket.close());
-            error = error.and_at(self.token.span.clone(), label);
-        }
-        self.report.add(error);
     }
 
     fn item(&mut self) -> Item {
