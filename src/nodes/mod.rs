@@ -18,6 +18,7 @@ pub static KINDS: &[&Kind] = &[
     &surface::mix::KIND,
     &wood::colour_pattern::KIND,
     &wood::pattern_lookup::KIND,
+    &wood::sample_pattern::KIND,
 ];
 
 /// The kind called `name`.

@@ -1,4 +1,6 @@
-//! The lookup against the published values, and its filter against plain integration.
+//! The lookup against known values, and its filter against plain integration.
+//!
+//! `colour-vectors.json` was computed in f64 by an independent implementation of the lookup of Momoi & Takatera 2014.
 
 use super::{Slope, columns, columns_with, grid, look_up};
 use fearless_simd::Level;
@@ -46,7 +48,7 @@ fn at_points(pattern: &ColourPattern, times: &[f64]) -> Vec<Vec<f32>> {
 }
 
 #[test]
-fn points_have_the_published_colours() {
+fn points_have_the_known_colours() {
     let vectors: Json = serde_json::from_str(include_str!("../data/colour-vectors.json")).unwrap();
     let times = numbers(&vectors["t"]);
     for (name, smooth) in [("nearest", false), ("linear", true)] {
@@ -219,7 +221,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1500))]
 
     #[test]
-    fn the_filter_is_the_mean(pattern in patterns(), start in -40.0f64..100.0, step in steps(), skew in steps()) {
+    fn the_filter_is_the_mean(
+        pattern in patterns(), start in -40.0f64..100.0, step in steps(), skew in steps(),
+    ) {
         const SIDE: usize = 6;
         let target = Slope { start, step, skew };
         let found = columns(&look_up(&pattern, time()), &grid(&target, [SIDE as u32 - 2; 2]));
@@ -247,7 +251,9 @@ proptest! {
     }
 
     #[test]
-    fn every_machine_computes_the_same_bits(pattern in patterns(), start in -40.0f64..100.0, step in steps()) {
+    fn every_machine_computes_the_same_bits(
+        pattern in patterns(), start in -40.0f64..100.0, step in steps(),
+    ) {
         let target = Slope { start, step, skew: 0.3 * step };
         let fields = look_up(&pattern, time());
         let bits = |level| {
@@ -262,7 +268,9 @@ proptest! {
     }
 
     #[test]
-    fn whole_periods_have_the_mean_of_the_table(pattern in patterns(), start in -50.0f64..50.0, periods in 1u32..5) {
+    fn whole_periods_have_the_mean_of_the_table(
+        pattern in patterns(), start in -50.0f64..50.0, periods in 1u32..5,
+    ) {
         let pattern = ColourPattern { after_end: AfterEnd::Repeat, years: 0.5, ..pattern };
         let mean = pattern.colours.iter().map(|colour| colour[0]).sum::<f32>() / pattern.colours.len() as f32;
         // Times that f32 holds exactly.

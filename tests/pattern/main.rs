@@ -4,6 +4,7 @@
 
 mod lookup;
 mod nodes;
+mod photographs;
 
 use fearless_simd::Level;
 use std::sync::Arc;

@@ -6,3 +6,4 @@ pub mod skeleton;
 pub mod skeleton_from_file;
 pub mod colour_pattern;
 pub mod pattern_lookup;
+pub mod sample_pattern;

@@ -8,7 +8,7 @@ mod span;
 mod table;
 
 use crate::field::{Block, InputColumn, Kernel, Sampling};
-use crate::key::KeyHasher;
+use crate::key::{Key, KeyHasher};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{AfterEnd, ColourPattern, Type, Unit, Value};
 use fearless_simd::dispatch;
@@ -62,7 +62,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 #[derive(Debug)]
 struct Lookup {
     table: Table,
-    key: crate::key::Key,
+    key: Key,
 }
 
 impl Lookup {
@@ -108,7 +108,7 @@ impl Kernel for Lookup {
     }
 
     fn nanoseconds(&self) -> f32 {
-        6.0
+        7.0
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
