@@ -1,25 +1,21 @@
 //! What is wrong with a recipe or a run: one type for the terminal, for JSON and for tests.
 
 mod codes;
+mod excerpt;
+mod json;
 mod nearest;
 mod render;
+mod source;
 
 pub use codes::Code;
+pub(crate) use excerpt::is_unsafe;
+pub use json::render_json;
 pub use nearest::nearest;
-pub use render::{render_json, render_text};
+pub use render::{render_all, render_all_styled, render_styled, render_text, sort};
+pub use source::{Position, SourceFile};
 
 use std::ops::Range;
-use std::path::PathBuf;
 use std::sync::Arc;
-
-/// The text of a recipe with the path it came from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SourceFile {
-    /// The path as the caller gave it.
-    pub path: PathBuf,
-    /// The whole text.
-    pub text: String,
-}
 
 /// Bytes of a source text.
 pub type Span = Range<usize>;

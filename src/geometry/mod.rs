@@ -1,1 +1,3 @@
-//! geometry
+//! Geometry in double precision: curves that structures and kernels are built from.
+
+pub mod spline;

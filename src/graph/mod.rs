@@ -4,6 +4,30 @@
 //! [`Graph`]: every name resolved, every literal of the type its input declares, every link between
 //! matching types, no cycle. Nothing behind this module sees recipe text again, except by span.
 
+mod arithmetic;
+mod binding;
+mod check;
+mod composite;
+mod described;
+mod domains;
+mod lexer;
+mod links;
+mod literal;
+mod load;
+mod names;
+mod number;
+mod order;
+mod parameters;
+mod recipe;
+mod reference;
+mod report;
+mod syntax;
+mod text;
+mod text_literal;
+mod tree;
+
+pub use load::{Loaded, Settings, load, load_text, load_text_with, no_output};
+
 use crate::diagnostics::{SourceFile, Span};
 use crate::node::Kind;
 use crate::value::{Domain, Value};
@@ -29,6 +53,13 @@ pub struct Graph {
     pub outputs: Vec<NodeIndex>,
     /// Nodes by name.
     pub by_name: BTreeMap<String, NodeIndex>,
+}
+
+impl Graph {
+    /// The node called `name`; outputs are not nodes.
+    pub fn node(&self, name: &str) -> Option<&Node> {
+        self.by_name.get(name).map(|index| &self.nodes[*index])
+    }
 }
 
 /// A value that a recipe exposes.

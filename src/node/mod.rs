@@ -25,7 +25,7 @@ pub struct Kind {
     pub inputs: &'static [Input],
     /// What comes out; `"node"` links to the first, `"node.name"` to any.
     pub outputs: &'static [Output],
-    /// A whole recipe without outputs in which a node of this kind is called `example`.
+    /// A whole recipe in which a node of this kind, or an output if it gives maps, is called `example`.
     pub example: &'static str,
     /// Makes the outputs, in order, from the inputs.
     pub build: fn(&Inputs<'_>, &Build<'_>) -> Result<Vec<Value>, Failure>,

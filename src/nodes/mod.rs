@@ -9,9 +9,16 @@ use crate::node::Kind;
 
 /// Every kind there is, in the order of the manual.
 pub static KINDS: &[&Kind] = &[
+    &wood::skeleton::KIND,
+    &wood::skeleton_from_file::KIND,
+    &wood::growth_field::KIND,
     &surface::material::KIND,
     &cut::slice_cut::KIND,
     &output::maps::KIND,
+    &surface::mix::KIND,
+    &wood::colour_pattern::KIND,
+    &wood::pattern_lookup::KIND,
+    &wood::sample_pattern::KIND,
 ];
 
 /// The kind called `name`.

@@ -14,10 +14,13 @@ pub enum AfterEnd {
 /// A table of colours from early to late, linear Rec. 709.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ColourPattern {
-    /// The texels; the first begins at time 0.
+    /// The texels, at least one; the first begins at time 0.
     pub colours: Vec<[f32; 3]>,
     /// Growth time that the table covers, in years: 1 for one year's pattern.
     pub years: f64,
+    /// Where rings begin, from 0 at the start of the table towards 1 at its end: the first is 0, the
+    /// others rise strictly. A ring ends where the next begins, the last one at 1.
+    pub ring_starts: Vec<f64>,
     /// What follows its end.
     pub after_end: AfterEnd,
     /// Whether colours are interpolated between texel centres. The border between late and early wood

@@ -1,3 +1,4 @@
 //! Surfaces: what a material is made of, and how it is cut.
 
 pub mod material;
+pub mod mix;

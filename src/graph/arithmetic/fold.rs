@@ -1,0 +1,94 @@
+//! What operators and functions make of numbers.
+
+use crate::graph::{Arithmetic, Function, Operator};
+
+impl Arithmetic {
+    /// A number, if all parts are numbers.
+    pub(super) fn fold(self) -> Arithmetic {
+        use Arithmetic::{Binary, Call, Negate, Number};
+        match &self {
+            Negate(of) => match **of {
+                Number(number) => Number(-number),
+                _ => self,
+            },
+            Binary(operator, parts) => match **parts {
+                [Number(a), Number(b)] => Number(operator.apply(a, b)),
+                _ => self,
+            },
+            Call(function, arguments) => {
+                let numbers: Option<Vec<f64>> =
+                    arguments.iter().map(Arithmetic::as_number).collect();
+                numbers
+                    .and_then(|numbers| function.apply(&numbers))
+                    .map_or(self, Number)
+            }
+            _ => self,
+        }
+    }
+
+    pub(super) fn as_number(&self) -> Option<f64> {
+        match self {
+            Arithmetic::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+}
+
+impl Operator {
+    /// What it makes of two numbers.
+    pub(super) fn apply(self, a: f64, b: f64) -> f64 {
+        match self {
+            Operator::Add => a + b,
+            Operator::Subtract => a - b,
+            Operator::Multiply => a * b,
+            Operator::Divide => a / b,
+        }
+    }
+}
+
+impl Function {
+    /// Every function.
+    pub const ALL: [Function; 7] = [
+        Function::Min,
+        Function::Max,
+        Function::Abs,
+        Function::Sqrt,
+        Function::Clamp,
+        Function::Mix,
+        Function::Luminance,
+    ];
+
+    /// The name in recipes.
+    pub fn name(self) -> &'static str {
+        ["min", "max", "abs", "sqrt", "clamp", "mix", "luminance"][self as usize]
+    }
+
+    /// The function called `name`.
+    pub fn from_name(name: &str) -> Option<Function> {
+        Function::ALL
+            .into_iter()
+            .find(|function| function.name() == name)
+    }
+
+    /// Numbers that it takes.
+    pub fn arguments(self) -> usize {
+        match self {
+            Function::Abs | Function::Sqrt | Function::Luminance => 1,
+            Function::Min | Function::Max => 2,
+            Function::Clamp | Function::Mix => 3,
+        }
+    }
+
+    /// What it makes of numbers; luminance is of colours.
+    pub(super) fn apply(self, numbers: &[f64]) -> Option<f64> {
+        Some(match (self, numbers) {
+            (Function::Min, [a, b]) => a.min(*b),
+            (Function::Max, [a, b]) => a.max(*b),
+            (Function::Abs, [a]) => a.abs(),
+            (Function::Sqrt, [a]) => a.max(0.0).sqrt(),
+            (Function::Clamp, [a, low, high]) => a.max(*low).min(*high),
+            (Function::Mix, [a, b, amount]) => a + (b - a) * amount,
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,184 @@
+//! Inputs of nodes: what a recipe writes for one, as a literal, a file, a link, arithmetic or channels.
+
+use super::composite::default_literal;
+use super::links::Linker;
+use super::literal::{Slot, parameter_name};
+use super::names::shown;
+use super::recipe::{key, report_duplicate_name};
+use super::text_literal::TextLiteral;
+use super::tree::{Shape, Tree};
+use super::{Binding, Source};
+use crate::diagnostics::{Code, Span};
+use crate::node::{Input, Presence};
+use crate::value::{Type, Unit, Value};
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+impl Linker<'_, '_> {
+    /// What an input is bound to; `node` is the place of the node's name.
+    pub(super) fn bind(
+        &mut self,
+        owner: &str,
+        input: &'static Input,
+        tree: Option<&Tree>,
+        node: &Span,
+    ) -> Option<Binding> {
+        let span = tree.map_or(node, |tree| &tree.span).clone();
+        let source = match (tree, input.presence) {
+            (Some(tree), _) => self.source(tree, input)?,
+            (None, Presence::Optional) => Source::Absent,
+            (None, Presence::Default(text)) => default_source(input, text),
+            (None, Presence::Required) => {
+                return self.reader.refuse_missing(owner, input, node.clone());
+            }
+        };
+        Some(Binding { span, source })
+    }
+
+    fn source(&mut self, tree: &Tree, input: &'static Input) -> Option<Source> {
+        let slot = Slot::from(input);
+        match (input.value_type, &tree.shape) {
+            (Type::File, _) => self.file(tree, slot),
+            (Type::Channels, Shape::Map(_)) => self.channels(tree, input),
+            (Type::Text | Type::Choice(_) | Type::Names, _) => {
+                self.reader.literal(tree, slot).map(Source::Literal)
+            }
+            (_, Shape::Text(text)) => self.text_source(tree, text, input),
+            _ => self.reader.literal(tree, slot).map(Source::Literal),
+        }
+    }
+
+    /// What a string means where it is not text.
+    fn text_source(&mut self, tree: &Tree, text: &TextLiteral, input: &Input) -> Option<Source> {
+        let slot = Slot::from(input);
+        let is_colour = input.value_type == Type::Colour && text.value.starts_with('#');
+        if parameter_name(&text.value).is_some() || is_colour {
+            return self.reader.literal(tree, slot).map(Source::Literal);
+        }
+        match (text.value.strip_prefix('='), input.value_type) {
+            (None, _) => self.link(&text.value, tree.span.clone(), input),
+            (Some(_), Type::Number(_)) => self.arithmetic(tree, text, input),
+            (Some(_), expected) => {
+                let name = shown(input.name);
+                let message = format!("expected {expected} for {name}, found arithmetic");
+                let span = tree.span.clone();
+                self.reader.refuse(
+                    Code::TypeMismatch,
+                    message,
+                    span,
+                    "gives a number",
+                    |error| error.expected(expected, "arithmetic"),
+                )
+            }
+        }
+    }
+
+    /// A path in the recipe's folder, written the same on every system.
+    fn file(&mut self, tree: &Tree, slot: Slot<'_>) -> Option<Source> {
+        let Value::Text(path) = self.reader.literal(tree, slot)? else {
+            return None;
+        };
+        let reason = if path.is_empty() {
+            "the path is empty"
+        } else if path.starts_with('/') {
+            "the path begins at the root of the disk"
+        } else if path.split('/').any(|part| part == "..") {
+            "the path leaves the folder"
+        } else if path.contains('\\') {
+            "the path has a backslash"
+        } else if path.contains(':') {
+            "the path has a colon"
+        } else if path.contains(char::is_control) {
+            "the path has a control character"
+        } else {
+            return Some(Source::File(PathBuf::from(path)));
+        };
+        let message = format!(
+            "{} must be a file in the recipe's folder, found {}",
+            shown(slot.name),
+            shown(&path)
+        );
+        self.reader.refuse(
+            Code::PathOutside,
+            message,
+            tree.span.clone(),
+            reason,
+            |error| {
+                error
+                    .expected("a path in the recipe's folder", shown(&path))
+                    .hint("write a path such as `photos/bar.png`, with forward slashes")
+            },
+        )
+    }
+
+    /// A map from names to numbers and colours.
+    fn channels(&mut self, tree: &Tree, input: &Input) -> Option<Source> {
+        let Shape::Map(entries) = &tree.shape else {
+            return None;
+        };
+        let mut seen: HashMap<&str, Span> = HashMap::new();
+        let mut channels = vec![];
+        for entry in entries {
+            let Some(name) = key(self.reader.report, entry, "a channel") else {
+                continue;
+            };
+            let span = entry.key.span.clone();
+            if let Some(first) = seen.insert(name, span.clone()) {
+                report_duplicate_name(self.reader.report, "channel", name, span, first);
+            }
+            let channel = self.channel(name, &entry.value, input);
+            channels.extend(channel.map(|source| (name.to_owned(), source)));
+        }
+        (channels.len() == entries.len()).then_some(Source::Channels(channels))
+    }
+
+    /// A number or a colour, whichever it is.
+    fn channel(&mut self, name: &str, tree: &Tree, input: &Input) -> Option<Source> {
+        let colour = Slot {
+            name,
+            value_type: Type::Colour,
+            range: input.range,
+        };
+        let number = colour.of(Type::Number(Unit::One));
+        let text = match &tree.shape {
+            Shape::Text(text) => text,
+            Shape::Number | Shape::Name(_) => {
+                return self.reader.literal(tree, number).map(Source::Literal);
+            }
+            Shape::Tuple(None, _) | Shape::List(_) => {
+                return self.reader.literal(tree, colour).map(Source::Literal);
+            }
+            _ => return self.reader.mismatch(tree, number),
+        };
+        if let Some(parameter) = parameter_name(&text.value) {
+            let declared = self.reader.parameters.refer(parameter);
+            let (value_type, unit) = declared.map_or((None, Unit::One), |d| (d.value_type, d.unit));
+            let slot = if value_type == Some(Type::Colour) {
+                colour
+            } else {
+                number.of(Type::Number(unit))
+            };
+            return self.reader.literal(tree, slot).map(Source::Literal);
+        }
+        if text.value.starts_with('#') {
+            return self.reader.literal(tree, colour).map(Source::Literal);
+        }
+        if text.value.starts_with('=') {
+            return self.arithmetic(tree, text, input);
+        }
+        let found = self.find(&text.value, tree.span.clone())?;
+        if !matches!(found.output.value_type, Type::Number(_) | Type::Colour) {
+            return self.refuse_type(&found, &text.value, tree.span.clone(), number);
+        }
+        self.constant(&found, &text.value, tree.span.clone(), input)?;
+        Some(Source::Link(found.link))
+    }
+}
+
+/// A default that a kind declares; the tests of kinds make sure that it is valid.
+fn default_source(input: &'static Input, text: &str) -> Source {
+    match (input.value_type, default_literal(input, text)) {
+        (Type::File, Value::Text(path)) => Source::File(PathBuf::from(path)),
+        (_, value) => Source::Literal(value),
+    }
+}

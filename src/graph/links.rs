@@ -1,0 +1,237 @@
+//! Links: finding the node and the output, and whether the input takes what it gives.
+
+use super::described::described_unit;
+use super::literal::{Reader, Slot};
+use super::names::{look_alike, shown};
+use super::{Link, Source};
+use crate::diagnostics::{Code, Span, nearest};
+use crate::node::{Input, Kind, Output, Varies};
+use crate::value::{Type, Unit};
+use petgraph::graph::NodeIndex;
+use std::collections::HashMap;
+
+/// What links can lead to.
+#[derive(Debug, Default)]
+pub(super) struct Scope<'t> {
+    /// The index of each node.
+    pub(super) nodes: HashMap<&'t str, NodeIndex>,
+    /// The names of nodes, in the order of the file.
+    pub(super) names: Vec<&'t str>,
+    /// The kind of each node and output; `None` if there is no such kind, which is reported.
+    pub(super) kinds: Vec<Option<&'static Kind>>,
+    /// The names of outputs, to which no link leads.
+    pub(super) outputs: Vec<&'t str>,
+}
+
+/// An output that a link leads to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    /// The link.
+    pub(super) link: Link,
+    /// What the kind declares.
+    pub(super) output: &'static Output,
+}
+
+/// Checks the links of one node.
+#[derive(Debug)]
+pub(super) struct Linker<'c, 's> {
+    /// Reads literals and keeps mistakes.
+    pub(super) reader: Reader<'c>,
+    /// What links can lead to.
+    pub(super) scope: &'s Scope<'s>,
+    /// The node or output that is checked.
+    pub(super) index: NodeIndex,
+}
+
+impl Linker<'_, '_> {
+    /// The output that `node` or `node.output` names.
+    pub(super) fn find(&mut self, text: &str, span: Span) -> Option<Found> {
+        let (node, output) = match text.split_once('.') {
+            Some((node, output)) => (node, Some(output)),
+            None => (text, None),
+        };
+        let Some(index) = self.scope.nodes.get(node).copied() else {
+            return self.refuse_unknown_node(text, node, span);
+        };
+        if index == self.index {
+            let message = format!("node {} takes its own output", shown(node));
+            return self
+                .reader
+                .refuse(Code::SelfLink, message, span, "this node itself", |e| e);
+        }
+        let kind = self.scope.kinds[index.index()]?;
+        let position = match output {
+            None => 0,
+            Some(name) => match kind.output(name) {
+                Some((position, _)) => position,
+                None => return self.refuse_unknown_output(node, kind, name, span),
+            },
+        };
+        let output = kind.outputs.get(position)?;
+        Some(Found {
+            link: Link {
+                node: index,
+                output: position,
+            },
+            output,
+        })
+    }
+
+    /// The link, if the input takes what it leads to.
+    pub(super) fn link(&mut self, text: &str, span: Span, input: &Input) -> Option<Source> {
+        let found = self.find(text, span.clone())?;
+        self.accept(&found, text, span.clone(), input)?;
+        self.constant(&found, text, span, input)?;
+        Some(Source::Link(found.link))
+    }
+
+    /// Whether the types match.
+    fn accept(&mut self, found: &Found, text: &str, span: Span, input: &Input) -> Option<()> {
+        let (expected, given) = (input.value_type, found.output.value_type);
+        if expected == given {
+            return Some(());
+        }
+        if let Some((expected, given)) = units(expected, given) {
+            let (name, text) = (shown(input.name), shown(text));
+            let label = format!("is {}", described_unit(given));
+            let message = format!("{name} is {}, {text} {label}", described_unit(expected));
+            return self
+                .reader
+                .refuse(Code::UnitMismatch, message, span, label, |error| {
+                    error.expected(expected.symbol(), given.symbol()).hint(
+"units are not converted; arithmetic such as `\"= 2 * node.output\"` is in the \
+                     input's unit",
+                )
+                });
+        }
+        self.refuse_type(found, text, span, Slot::from(input))
+    }
+
+    /// Reports an output of another type than the input takes.
+    pub(super) fn refuse_type<T>(
+        &mut self,
+        found: &Found,
+        text: &str,
+        span: Span,
+        slot: Slot<'_>,
+    ) -> Option<T> {
+        let (expected, given) = (slot.value_type, found.output.value_type);
+        let message = format!(
+            "expected {expected} for {}, {} gives {given}",
+            shown(slot.name),
+            shown(text)
+        );
+        let kind = self.scope.kinds[found.link.node.index()]?;
+        let node = text.split('.').next().unwrap_or(text);
+        let suits = |output: &&Output| output.value_type == expected;
+        let other = kind
+            .outputs
+            .iter()
+            .find(suits)
+            .map(|output| format!("{node}.{}", output.name));
+        let label = format!("gives {given}");
+        self.reader
+            .refuse(Code::LinkMismatch, message, span, label, |error| {
+                let is_colour = matches!((expected, given), (Type::Number(_), Type::Colour));
+                let mut error = error
+                    .expected(expected, given)
+                    .nearest(other.into_iter().collect());
+                if is_colour && error.nearest.is_empty() {
+                    error = error.hint(
+                        "make a number of a colour by arithmetic: `\"= luminance(node.colour)\"`",
+                    );
+                }
+                error
+            })
+    }
+
+    /// Whether the input may vary if the output does.
+    pub(super) fn constant(
+        &mut self,
+        found: &Found,
+        text: &str,
+        span: Span,
+        input: &Input,
+    ) -> Option<()> {
+        let varies = found.output.varies == Varies::PerPoint;
+        if !varies || input.varies == Varies::PerPoint || input.value_type == Type::Material {
+            return Some(());
+        }
+        let message = format!(
+            "{} must be constant, {} differs from point to point",
+            shown(input.name),
+            shown(text)
+        );
+        self.reader.refuse(
+            Code::NotConstant,
+            message,
+            span,
+            "differs from point to point",
+            |error| {
+                error
+                    .expected("a constant", "a field")
+                    .hint("write a literal or a parameter")
+            },
+        )
+    }
+
+    fn refuse_unknown_node<T>(&mut self, text: &str, node: &str, span: Span) -> Option<T> {
+        let message = format!("there is no node {}", shown(node));
+        let names = nearest(node, self.scope.names.iter().copied());
+        let is_output = self.scope.outputs.contains(&node);
+        let is_number = text.parse::<f64>().is_ok();
+        let label = look_alike(node, "no node has this name");
+        self.reader
+            .refuse(Code::UnknownNode, message, span, label, |error| {
+                let error = error.nearest(names);
+                match (is_output, is_number) {
+                    (true, _) => {
+                        error.hint("it is an output of the recipe, and links lead to nodes")
+                    }
+                    (_, true) => error.hint("write numbers without quotes"),
+                    _ => error,
+                }
+            })
+    }
+
+    fn refuse_unknown_output<T>(
+        &mut self,
+        node: &str,
+        kind: &'static Kind,
+        name: &str,
+        span: Span,
+    ) -> Option<T> {
+        let names: Vec<_> = kind.outputs.iter().map(|output| output.name).collect();
+        let message = format!(
+            "node {} ({}) has no output {}",
+            shown(node),
+            kind.name,
+            shown(name)
+        );
+        self.reader.refuse(
+            Code::UnknownOutput,
+            message,
+            span,
+            "no such output",
+            |error| {
+                error
+                    .nearest(nearest(name, names.iter().copied()))
+                    .hint(format!(
+                        "the outputs of `{}` are {}",
+                        kind.name,
+                        names.join(", ")
+                    ))
+            },
+        )
+    }
+}
+
+/// The units of two types that differ in nothing else.
+fn units(expected: Type, given: Type) -> Option<(Unit, Unit)> {
+    match (expected, given) {
+        (Type::Number(expected), Type::Number(given))
+        | (Type::Vector(expected), Type::Vector(given))
+        | (Type::Pair(expected), Type::Pair(given)) => Some((expected, given)),
+        _ => None,
+    }
+}

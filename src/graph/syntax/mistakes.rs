@@ -1,0 +1,100 @@
+//! What is said about text that is not a recipe's.
+
+use super::{DEPTH, Parser, VALUES};
+use crate::diagnostics::{Code, Span};
+use crate::graph::lexer::{Bracket, TokenKind, unclosed};
+use crate::graph::names::{shown, shown_letter};
+use crate::graph::tree::{Shape, Tree};
+
+impl Parser<'_, '_> {
+    /// Reports that something else was expected than the token.
+    pub(super) fn expected(&mut self, what: &str) {
+        if self.gave_up || self.token.follows_mistake {
+            return;
+        }
+        let found = self.found();
+        let message = format!("expected {what}, found {found}");
+        let label = format!("expected {what}");
+        let span = self.token.span.clone();
+        let error = self.report.error(Code::Syntax, message, span, label);
+        self.report.add(error.expected(what, found));
+    }
+
+    pub(super) fn found(&self) -> String {
+        match &self.token.kind {
+            TokenKind::Open(bracket) => shown_letter(bracket.open()),
+            TokenKind::Close(bracket) => shown_letter(bracket.close()),
+            TokenKind::Colon => "`:`".to_owned(),
+            TokenKind::Comma => "`,`".to_owned(),
+            TokenKind::End => "the end of the file".to_owned(),
+            _ => shown(&self.report.source.text[self.token.span.clone()]),
+        }
+    }
+
+    pub(super) fn refuse_many(&mut self) {
+        if !self.gave_up {
+            let message = format!("a recipe has at most {VALUES} values");
+            let span = self.token.span.clone();
+            let error = self
+                .report
+                .error(Code::TooLarge, message, span, "one too many");
+            self.report.add(error);
+        }
+        self.give_up();
+    }
+
+    /// Reports brackets that are too deep and skips to the end of the file.
+    pub(super) fn refuse_depth(&mut self) {
+        if !self.gave_up {
+            let message = format!("brackets are nested more than {DEPTH} levels deep");
+            let span = self.token.span.clone();
+            let label = format!("this is level {}", DEPTH + 1);
+            self.report
+                .add(self.report.error(Code::NestedTooDeep, message, span, label));
+        }
+        self.give_up();
+    }
+
+    pub(super) fn refuse_value_among_fields(&mut self, value: &Tree) {
+        if !matches!(value.shape, Shape::Missing) {
+            let span = value.span.clone();
+            let found = shown(&self.report.source.text[span.clone()]);
+            let message = format!("expected `name: value`, found {found}");
+            let error = self
+                .report
+                .error(Code::Syntax, message, span, "this has no name");
+            self.report.add(error.expected("`name: value`", found));
+        }
+    }
+
+    /// Reports a bracket that closes another sort than the one that is open.
+    pub(super) fn refuse_closing(&mut self, bracket: Bracket, opening: &Span) {
+        let (expected, found) = (shown_letter(bracket.close()), self.found());
+        let message = format!("expected {expected}, found {found}");
+        let label = format!("expected {expected}");
+        let span = self.token.span.clone();
+        let error = self.report.error(Code::Syntax, message, span, label);
+        self.report.add(
+            error
+                .expected(expected, found)
+                .and_at(opening.clone(), "opened here"),
+        );
+    }
+
+    /// Reports the innermost bracket that is not closed; at the end of the file it stands for all.
+    pub(super) fn refuse_unclosed(&mut self, bracket: Bracket, opening: &Span) {
+        let is_explained = self.token.kind == TokenKind::End && self.lexer.found_unclosed;
+        if self.gave_up || is_explained {
+            return;
+        }
+        let what = format!("`{}`", bracket.open());
+        let mut error = unclosed(self.report, opening.clone(), &what);
+        if self.token.kind == TokenKind::End {
+            self.gave_up = true;
+        } else {
+            let label = format!("expected `{}` before this", bracket.close());
+            error = error.and_at(self.token.span.clone(), label);
+        }
+        self.report.add(error);
+    }
+}

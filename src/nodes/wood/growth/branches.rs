@@ -1,0 +1,252 @@
+//! The influence of one branch on the growth times of a run of samples.
+
+use super::power::{Power, inverse_root, raise};
+use super::{GrowingBranch, GrowthSettings};
+use fearless_simd::prelude::*;
+use fearless_simd_macros::simd;
+use glam::DVec3;
+
+/// Nearer to the plane through its start than this, in mm, a branch has no influence: there T_2 is
+/// beyond all others, and the quotients below would leave the range of numbers.
+const LEAST_ALONG: f32 = 1e-9;
+
+/// A branch, as the kernel needs it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BranchConstants {
+    /// The start as a sum of two: near it positions keep all their digits.
+    start: [[f32; 3]; 2],
+    direction: [f32; 3],
+    /// v_b.
+    speed: f32,
+    /// v_b T_alpha.
+    speed_time: f32,
+    /// v_b / v_e.
+    speed_ratio: f32,
+    /// Half of the reach along and across, and their inverses.
+    half_reach: [[f32; 2]; 2],
+    pub(super) starts_below_ground: bool,
+}
+
+impl BranchConstants {
+    pub(super) fn new(branch: &GrowingBranch, settings: &GrowthSettings) -> BranchConstants {
+        let coarse = branch.start.as_vec3();
+        let rest = branch.start - DVec3::from(coarse);
+        let reach = settings
+            .reach
+            .map_or([1.0; 2], |reach| [reach.along, reach.across]);
+        BranchConstants {
+            start: [coarse.to_array(), rest.as_vec3().to_array()],
+            direction: branch.direction.as_vec3().to_array(),
+            speed: branch.thickening as f32,
+            speed_time: (branch.thickening * branch.start_time) as f32,
+            speed_ratio: (branch.thickening / settings.elongation) as f32,
+            half_reach: [
+                reach.map(|reach| (0.5 * reach) as f32),
+                reach.map(|r| (2.0 / r) as f32),
+            ],
+            starts_below_ground: branch.start_time < 0.0,
+        }
+    }
+}
+
+/// Where a sample is, seen from a branch: `T_2 = time / scale`, with both in mm^2 and mm^2/year.
+struct Seen<F> {
+    time: F,
+    scale: F,
+    /// Distance along the axis.
+    along: F,
+    /// Square of the distance from the axis.
+    across2: F,
+}
+
+#[simd]
+fn see<S: Simd>(simd: S, branch: &BranchConstants, [x, y, z]: [&[f32]; 3]) -> Seen<S::f32s> {
+    let [coarse, rest] = branch.start;
+    let part =
+        |column: &[f32], axis: usize| S::f32s::from_slice(simd, column) - coarse[axis] - rest[axis];
+    let (x, y, z) = (part(x, 0), part(y, 1), part(z, 2));
+    let [ux, uy, uz] = branch.direction;
+    let along = x * ux + y * uy + z * uz;
+    // The foot's distance is taken from a difference: |w|^2 - s^2 would lose it near the axis.
+    let (fx, fy, fz) = (x - along * ux, y - along * uy, z - along * uz);
+    let across2 = fx * fx + fy * fy + fz * fz;
+    let across_by_cosine = (across2 * (across2 + along * along)).sqrt();
+    let time = along * (along * branch.speed_ratio + branch.speed_time) + across_by_cosine;
+    Seen {
+        time,
+        scale: along * branch.speed,
+        along,
+        across2,
+    }
+}
+
+/// What is left of the influence: 0 behind the start and from the reach on.
+#[simd]
+fn fade<S: Simd>(simd: S, branch: &BranchConstants, along: S::f32s, across2: S::f32s) -> S::f32s {
+    let [halves, inverses] = branch.half_reach;
+    let smooth = |distance: S::f32s, index: usize| {
+        let t = ((distance - halves[index]) * inverses[index])
+            .max(0.0)
+            .min(1.0);
+        S::f32s::splat(simd, 1.0) - t * t * (S::f32s::splat(simd, 3.0) - t * 2.0)
+    };
+    smooth(along, 0) * smooth(across2.sqrt(), 1)
+}
+
+/// T_1 / T_2 and the fade; both 0 where there is no influence.
+#[simd]
+fn ratio_and_fade<S: Simd, const REACH: bool>(
+    simd: S,
+    branch: &BranchConstants,
+    position: [&[f32]; 3],
+    trunk: S::f32s,
+) -> (S::f32s, S::f32s) {
+    let seen = see(simd, branch, position);
+    let zero = S::f32s::splat(simd, 0.0);
+    let ahead = seen.along.simd_gt(LEAST_ALONG);
+    let ratio = ahead.select(trunk * seen.scale / seen.time, zero);
+    let whole = S::f32s::splat(simd, 1.0);
+    let fade = if REACH {
+        fade(simd, branch, seen.along, seen.across2)
+    } else {
+        whole
+    };
+    let fade = ahead.select(fade, zero);
+    (fade.simd_gt(0.0).select(ratio, zero), fade)
+}
+
+/// Adds `f (T_1 / T_2)^2` to the sums.
+#[simd]
+pub(super) fn add_squares<S: Simd, const REACH: bool>(
+    simd: S,
+    branch: &BranchConstants,
+    [x, y, z]: [&[f32]; 3],
+    trunk: &[f32],
+    sums: &mut [f32],
+) {
+    let lanes = S::f32s::LEN;
+    let columns = x
+        .chunks_exact(lanes)
+        .zip(y.chunks_exact(lanes))
+        .zip(z.chunks_exact(lanes));
+    let results = trunk.chunks_exact(lanes).zip(sums.chunks_exact_mut(lanes));
+    for (((x, y), z), (trunk, sums)) in columns.zip(results) {
+        let trunk = S::f32s::from_slice(simd, trunk);
+        let (ratio, fade) = ratio_and_fade::<S, REACH>(simd, branch, [x, y, z], trunk);
+        let square = if REACH {
+            ratio * ratio * fade
+        } else {
+            ratio * ratio
+        };
+        (S::f32s::from_slice(simd, sums) + square).store_slice(sums);
+    }
+}
+
+/// From T_1 and `S = sum f_i (T_1 / T_i)^2` to `T = T_1 / sqrt(1 + S)` and `S / (1 + S)`.
+#[simd]
+pub(super) fn finish_squares<S: Simd>(simd: S, times: &mut [f32], sums: &mut [f32]) {
+    let lanes = S::f32s::LEN;
+    for (times, sums) in times
+        .chunks_exact_mut(lanes)
+        .zip(sums.chunks_exact_mut(lanes))
+    {
+        let sum = S::f32s::from_slice(simd, sums);
+        let of_trunk = S::f32s::splat(simd, 1.0) / (sum + 1.0);
+        (S::f32s::from_slice(simd, times) * of_trunk.sqrt()).store_slice(times);
+        (sum * of_trunk).store_slice(sums);
+    }
+}
+
+/// Sums of powers of ratios, scaled by the largest ratio so far so that none overflows.
+pub(super) struct ScaledSums<'a> {
+    /// The largest T_1 / T_i, that of the trunk being 1.
+    pub(super) largest: &'a mut [f32],
+    /// `largest^-k`: the trunk's part.
+    pub(super) of_trunk: &'a mut [f32],
+    /// `sum f_i (T_1 / T_i / largest)^k`.
+    pub(super) of_branches: &'a mut [f32],
+}
+
+/// Adds `f (T_1 / T_2)^k` to the scaled sums.
+#[simd]
+pub(super) fn add_powers<S: Simd, const REACH: bool>(
+    simd: S,
+    branch: &BranchConstants,
+    power: Power,
+    [x, y, z]: [&[f32]; 3],
+    trunk: &[f32],
+    sums: &mut ScaledSums<'_>,
+) {
+    let lanes = S::f32s::LEN;
+    for start in (0..trunk.len()).step_by(lanes) {
+        let here = start..start + lanes;
+        let load = |column: &[f32]| S::f32s::from_slice(simd, &column[here.clone()]);
+        let position = [&x[here.clone()], &y[here.clone()], &z[here.clone()]];
+        let (ratio, fade) = ratio_and_fade::<S, REACH>(simd, branch, position, load(trunk));
+        let before = load(sums.largest);
+        let largest = before.max(ratio);
+        let raised = raise(simd, before.min(ratio) / largest, power);
+        let (of_trunk, of_branches) = (load(sums.of_trunk), load(sums.of_branches));
+        let leads = ratio.simd_gt(before);
+        let of_branches = leads.select(of_branches * raised + fade, of_branches + fade * raised);
+        largest.store_slice(&mut sums.largest[here.clone()]);
+        leads
+            .select(of_trunk * raised, of_trunk)
+            .store_slice(&mut sums.of_trunk[here.clone()]);
+        of_branches.store_slice(&mut sums.of_branches[here]);
+    }
+}
+
+/// From T_1 and the scaled sums to T and the share of the branches, which replaces their sum.
+#[simd]
+pub(super) fn finish_powers<S: Simd>(
+    simd: S,
+    power: Power,
+    times: &mut [f32],
+    sums: &mut ScaledSums<'_>,
+) {
+    let lanes = S::f32s::LEN;
+    for start in (0..times.len()).step_by(lanes) {
+        let here = start..start + lanes;
+        let load = |column: &[f32]| S::f32s::from_slice(simd, &column[here.clone()]);
+        let of_branches = load(sums.of_branches);
+        let sum = load(sums.of_trunk) + of_branches;
+        let time = load(times) / load(sums.largest) * inverse_root(simd, sum, power);
+        time.store_slice(&mut times[here.clone()]);
+        (of_branches / sum).store_slice(&mut sums.of_branches[here]);
+    }
+}
+
+/// Lowers `least` to T_2 where the branch has influence, and notes there that it is a branch's.
+#[simd]
+pub(super) fn take_least<S: Simd, const REACH: bool>(
+    simd: S,
+    branch: &BranchConstants,
+    [x, y, z]: [&[f32]; 3],
+    least: &mut [f32],
+    of_branch: &mut [f32],
+) {
+    let lanes = S::f32s::LEN;
+    for start in (0..least.len()).step_by(lanes) {
+        let here = start..start + lanes;
+        let seen = see(
+            simd,
+            branch,
+            [&x[here.clone()], &y[here.clone()], &z[here.clone()]],
+        );
+        let mut active = seen.along.simd_gt(LEAST_ALONG);
+        if REACH {
+            active &= fade(simd, branch, seen.along, seen.across2).simd_gt(0.0);
+        }
+        let before = S::f32s::from_slice(simd, &least[here.clone()]);
+        let time = seen.time / seen.scale;
+        let earlier = active & time.simd_lt(before);
+        earlier
+            .select(time, before)
+            .store_slice(&mut least[here.clone()]);
+        let share = S::f32s::from_slice(simd, &of_branch[here.clone()]);
+        earlier
+            .select(S::f32s::splat(simd, 1.0), share)
+            .store_slice(&mut of_branch[here]);
+    }
+}

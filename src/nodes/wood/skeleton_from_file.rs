@@ -1,0 +1,95 @@
+//! `skeleton_from_file`: trunk and branches from a scanned log.
+//!
+//! `pith` is a JSON list of `[x, y, z]` in mm with rising z. `knots` is a JSON list of nine numbers
+//! `[A, B, C, D, E, F, G, H, I]` for each knot, in mm and radians, as published with Larsson et al. 2022,
+//! "Procedural Texturing of Solid Wood with Knots". At the distance r from the pith a knot is at
+//!
+//! ```text
+//! z(r) = C + D sqrt(r) + E r        azimuth(r) = F + G ln(r)
+//! ```
+//!
+//! and it ends at r = H. Its branch is the chord from b1, the point of the trunk's curve at height C, to
+//! the knot's end, H away from the curve's point at height z(H) in the direction (cos, sin) of
+//! azimuth(H). Above its last node the curve continues straight.
+//!
+//! The source does not say what A and B mean. We read `A + B r^(1/4)` as the angle in radians that the
+//! knot's diameter spans, seen from the pith. So half of its thickness is `H tan((A + B H^(1/4)) / 2)` at
+//! its end, and that is what `growth_field` solves for the branch's speed of thickening. I, the distance
+//! at which the knot died, is not used.
+//!
+//! Left out are knots that have no positive thickness or length at their end, and knots that start below
+//! the first or above the last point of the pith: nothing is clamped to it.
+
+use super::growth::log_file;
+use super::skeleton::{TANGENTS, tangents};
+use crate::geometry::spline::TrunkCurve;
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::value::{Skeleton, Type, Value};
+use std::sync::Arc;
+
+/// Trunk and branches from the pith and the knots of a measured log.
+pub static KIND: Kind = Kind {
+    name: "skeleton_from_file",
+    version: 1,
+    about: "The skeleton of a measured log: its pith as trunk, its knots as branches.",
+    source: "Larsson et al. 2022 (the knots' formulas and data); Momoi & Takatera 2014, eqs. (4)-(8)",
+    inputs: &[
+        Input::new(
+            "pith",
+            Type::File,
+            "JSON list of [x, y, z] in mm, from the ground up.",
+        ),
+        Input::new(
+            "knots",
+            Type::File,
+            "JSON list of nine numbers A to I for each knot.",
+        )
+        .optional(),
+        TANGENTS,
+        Input::new(
+            "every",
+            Type::Whole,
+            "Take every n-th point of the pith, and the last.",
+        )
+        .default("1")
+        .range(1.0, 100_000.0),
+    ],
+    outputs: &[Output::new(
+        "skeleton",
+        Type::Skeleton,
+        "Trunk and branches.",
+    )],
+    example: "(nodes: { \"example\": skeleton_from_file(
+        pith: \"spruce_log/Gran_1_pith.json\",
+        knots: \"spruce_log/Gran_1_knots.json\",
+        every: 10,
+    ) })",
+    build,
+};
+
+fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let pith = log_file::pith(&inputs.file("pith").bytes)
+        .map_err(|reason| Failure::of_input("pith", reason))?;
+    let every = usize::try_from(inputs.whole("every")).unwrap_or(1).max(1);
+    let last = pith.len().saturating_sub(1);
+    let kept = |(index, node)| (index % every == 0 || index == last).then_some(node);
+    let trunk: Vec<_> = pith.into_iter().enumerate().filter_map(kept).collect();
+    let tangents = tangents(inputs);
+    let curve = TrunkCurve::through(&trunk, tangents)
+        .map_err(|error| Failure::of_input("pith", error.to_string()))?;
+    let knots = if inputs.get("knots").is_some() {
+        log_file::knots(&inputs.file("knots").bytes)
+            .map_err(|reason| Failure::of_input("knots", reason))?
+    } else {
+        vec![]
+    };
+    let branches = knots
+        .iter()
+        .filter_map(|knot| knot.branch(&curve))
+        .collect();
+    Ok(vec![Value::Skeleton(Arc::new(Skeleton {
+        trunk,
+        tangents,
+        branches,
+    }))])
+}
