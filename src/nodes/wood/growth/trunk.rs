@@ -1,6 +1,7 @@
 //! Growth time by the trunk alone, for columns of positions.
 
 use super::GrowthModel;
+use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
@@ -104,7 +105,12 @@ impl TrunkTable {
 
     /// The piece that holds height `z`.
     fn piece(&self, z: f32) -> usize {
-        let mut piece = self.buckets[self.bucket(z)] as usize;
+        self.piece_in_bucket(z, self.bucket(z))
+    }
+
+    #[inline(always)]
+    fn piece_in_bucket(&self, z: f32, bucket: usize) -> usize {
+        let mut piece = self.buckets[bucket] as usize;
         for round in (0..self.rounds).rev() {
             let step = 1 << round;
             piece += if self.bounds[piece + step] <= z {
@@ -114,17 +120,6 @@ impl TrunkTable {
             };
         }
         piece
-    }
-
-    /// Square of the distance from the curve at the same height.
-    fn square_across(&self, x: f32, y: f32, z: f32) -> f32 {
-        let piece = &self.pieces[self.piece(z)];
-        let h = z - piece.start;
-        let [x0, x1, x2, x3] = piece.x;
-        let [y0, y1, y2, y3] = piece.y;
-        let dx = (x - x0) - h * (x1 + h * (x2 + h * x3));
-        let dy = (y - y0) - h * (y1 + h * (y2 + h * y3));
-        dx * dx + dy * dy
     }
 }
 
@@ -150,7 +145,7 @@ pub(super) fn trunk_times<S: Simd>(
         let square = if holds(simd, table, piece, height) {
             square_in_piece(simd, &table.pieces[piece], x, y, height)
         } else {
-            square_by_lane(simd, table, [x, y, z])
+            square_by_lane(simd, table, [x, y, z], height)
         };
         let time = height * table.years_along + square.sqrt() * table.years_across;
         time.store_slice(times);
@@ -158,7 +153,7 @@ pub(super) fn trunk_times<S: Simd>(
 }
 
 /// Whether all heights are in one piece.
-#[simd]
+#[inline(always)]
 fn holds<S: Simd>(simd: S, table: &TrunkTable, piece: usize, height: S::f32s) -> bool {
     let _ = simd;
     let above = height.simd_ge(table.bounds[piece]);
@@ -166,7 +161,7 @@ fn holds<S: Simd>(simd: S, table: &TrunkTable, piece: usize, height: S::f32s) ->
     (above & below).all_true()
 }
 
-#[simd]
+#[inline(always)]
 fn square_in_piece<S: Simd>(
     simd: S,
     piece: &PieceConstants,
@@ -175,21 +170,72 @@ fn square_in_piece<S: Simd>(
     height: S::f32s,
 ) -> S::f32s {
     let h = height - piece.start;
-    let across = |column: &[f32], [c0, c1, c2, c3]: [f32; 4]| {
-        let value = S::f32s::from_slice(simd, column);
-        (value - c0) - h * (h * (h * c3 + c2) + c1)
-    };
-    let (dx, dy) = (across(x, piece.x), across(y, piece.y));
+    let [x0, x1, x2, x3] = piece.x;
+    let [y0, y1, y2, y3] = piece.y;
+    let dx = (S::f32s::from_slice(simd, x) - x0) - h * (h * (h * x3 + x2) + x1);
+    let dy = (S::f32s::from_slice(simd, y) - y0) - h * (h * (h * y3 + y2) + y1);
     dx * dx + dy * dy
 }
 
-#[simd]
-fn square_by_lane<S: Simd>(simd: S, table: &TrunkTable, [x, y, z]: [&[f32]; 3]) -> S::f32s {
+/// The same where every lane may be in another piece.
+#[inline(always)]
+fn square_by_lane<S: Simd>(
+    simd: S,
+    table: &TrunkTable,
+    [x, y, z]: [&[f32]; 3],
+    height: S::f32s,
+) -> S::f32s {
+    let bucket = (height - table.lowest) * table.buckets_per_millimetre;
+    let last = table.buckets.len() - 2;
+    let buckets: S::i32s = bucket.max(0.0).min(last as f32).to_int();
     let mut squares = [0.0; MOST_LANES];
-    for (square, ((x, y), z)) in squares.iter_mut().zip(x.iter().zip(y).zip(z)) {
-        *square = table.square_across(*x, *y, *z);
+    for first in (0..S::f32s::LEN).step_by(4) {
+        let four = first..first + 4;
+        let mut pieces = [&table.pieces[0]; 4];
+        for (lane, piece) in pieces.iter_mut().enumerate() {
+            let bucket = (buckets[first + lane] as usize).min(last);
+            *piece = &table.pieces[table.piece_in_bucket(z[first + lane], bucket)];
+        }
+        let position = [&x[four.clone()], &y[four.clone()], &z[four.clone()]];
+        square_in_pieces(simd, pieces, position).store_slice(&mut squares[four]);
     }
     S::f32s::from_slice(simd, &squares[..S::f32s::LEN])
+}
+
+#[inline(always)]
+fn square_in_pieces<S: Simd>(
+    simd: S,
+    [a, b, c, d]: [&PieceConstants; 4],
+    [x, y, z]: [&[f32]; 3],
+) -> f32x4<S> {
+    let start = f32x4::load_array(simd, [a.start, b.start, c.start, d.start]);
+    let h = f32x4::from_slice(simd, z) - start;
+    let [x0, x1, x2, x3] = transposed(simd, [&a.x, &b.x, &c.x, &d.x]);
+    let [y0, y1, y2, y3] = transposed(simd, [&a.y, &b.y, &c.y, &d.y]);
+    let dx = (f32x4::from_slice(simd, x) - x0) - h * (h * (h * x3 + x2) + x1);
+    let dy = (f32x4::from_slice(simd, y) - y0) - h * (h * (h * y3 + y2) + y1);
+    dx * dx + dy * dy
+}
+
+/// Columns from rows.
+#[inline(always)]
+fn transposed<S: Simd>(simd: S, [a, b, c, d]: [&[f32; 4]; 4]) -> [f32x4<S>; 4] {
+    let (a, b) = (
+        f32x4::load_array_ref(simd, a),
+        f32x4::load_array_ref(simd, b),
+    );
+    let (c, d) = (
+        f32x4::load_array_ref(simd, c),
+        f32x4::load_array_ref(simd, d),
+    );
+    let (low_ac, high_ac) = (a.zip_low(c), a.zip_high(c));
+    let (low_bd, high_bd) = (b.zip_low(d), b.zip_high(d));
+    [
+        low_ac.zip_low(low_bd),
+        low_ac.zip_high(low_bd),
+        high_ac.zip_low(high_bd),
+        high_ac.zip_high(high_bd),
+    ]
 }
 
 #[cfg(test)]
