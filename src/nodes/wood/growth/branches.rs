@@ -23,8 +23,9 @@ pub(super) struct BranchConstants {
     speed_time: f32,
     /// v_b / v_e.
     speed_ratio: f32,
-    /// Half of the reach along and across, and their inverses.
-    half_reach: [[f32; 2]; 2],
+    /// The reach along and across.
+    reach: [f32; 2],
+    inverse_half_reach: [f32; 2],
     /// Where along and across the fade is 0 whatever the rounding.
     surely_beyond: [f32; 2],
     pub(super) starts_below_ground: bool,
@@ -43,10 +44,8 @@ impl BranchConstants {
             speed: branch.thickening as f32,
             speed_time: (branch.thickening * branch.start_time) as f32,
             speed_ratio: (branch.thickening / settings.elongation) as f32,
-            half_reach: [
-                reach.map(|reach| (0.5 * reach) as f32),
-                reach.map(|r| (2.0 / r) as f32),
-            ],
+            reach: reach.map(|reach| reach as f32),
+            inverse_half_reach: reach.map(|reach| (2.0 / reach) as f32),
             surely_beyond: reach.map(|reach| (1.00001 * reach) as f32),
             starts_below_ground: branch.start_time < 0.0,
         }
@@ -102,40 +101,39 @@ fn scale_and_time<S: Simd>(branch: &BranchConstants, seen: &Seen<S::f32s>) -> [S
 
 /// What the reach leaves of the influence.
 #[inline(always)]
-fn fade<S: Simd>(simd: S, branch: &BranchConstants, seen: &Seen<S::f32s>) -> S::f32s {
-    let [halves, inverses] = branch.half_reach;
-    fade_along(simd, seen.along, halves[0], inverses[0])
-        * fade_along(simd, seen.across2.sqrt(), halves[1], inverses[1])
+fn fade<S: Simd>(branch: &BranchConstants, seen: &Seen<S::f32s>) -> S::f32s {
+    let ([along, across], [by_along, by_across]) = (branch.reach, branch.inverse_half_reach);
+    fade_along::<S>(seen.along, along, by_along)
+        * fade_along::<S>(seen.across2.sqrt(), across, by_across)
 }
 
-/// Smoothstep from 1 at half of a reach to 0 at the reach.
+/// Smoothstep from 1 at half of a reach to 0 at the reach; counted from there, it is precise there.
 #[inline(always)]
-fn fade_along<S: Simd>(simd: S, distance: S::f32s, half: f32, inverse: f32) -> S::f32s {
-    let t = ((distance - half) * inverse).max(0.0).min(1.0);
-    S::f32s::splat(simd, 1.0) - t * t * (S::f32s::splat(simd, 3.0) - t * 2.0)
+fn fade_along<S: Simd>(distance: S::f32s, reach: f32, inverse_half: f32) -> S::f32s {
+    let left = ((distance - reach) * -inverse_half).max(0.0).min(1.0);
+    left * left * (left * -2.0 + 3.0)
 }
 
-/// T_1 / T_2 and the fade; both 0 where there is no influence.
+/// `f T_1 / T_2`; 0 where there is no influence.
 #[inline(always)]
-fn ratio_and_fade<S: Simd, const REACH: bool>(
+fn ratio<S: Simd, const REACH: bool>(
     simd: S,
     branch: &BranchConstants,
     seen: &Seen<S::f32s>,
     trunk: S::f32s,
-) -> [S::f32s; 2] {
-    let zero = S::f32s::splat(simd, 0.0);
-    let ahead = seen.along.simd_gt(LEAST_ALONG);
+) -> S::f32s {
     let [scale, time] = scale_and_time::<S>(branch, seen);
-    let ratio = ahead.select(trunk * scale / time, zero);
+    let mut ratio = trunk * scale / time;
+    let mut active = seen.along.simd_gt(LEAST_ALONG);
     if REACH {
-        let fade = ahead.select(fade(simd, branch, seen), zero);
-        [fade.simd_gt(0.0).select(ratio, zero), fade]
-    } else {
-        [ratio, ahead.select(S::f32s::splat(simd, 1.0), zero)]
+        let fade = fade::<S>(branch, seen);
+        active &= fade.simd_gt(0.0);
+        ratio *= fade;
     }
+    active.select(ratio, S::f32s::splat(simd, 0.0))
 }
 
-/// Adds `f (T_1 / T_2)^2` to the sums.
+/// Adds `(f T_1 / T_2)^2` to the sums.
 #[simd]
 pub(super) fn add_squares<S: Simd, const REACH: bool>(
     simd: S,
@@ -156,17 +154,12 @@ pub(super) fn add_squares<S: Simd, const REACH: bool>(
             continue;
         }
         let trunk = S::f32s::from_slice(simd, trunk);
-        let [ratio, fade] = ratio_and_fade::<S, REACH>(simd, branch, &seen, trunk);
-        let square = if REACH {
-            ratio * ratio * fade
-        } else {
-            ratio * ratio
-        };
-        (S::f32s::from_slice(simd, sums) + square).store_slice(sums);
+        let ratio = ratio::<S, REACH>(simd, branch, &seen, trunk);
+        (S::f32s::from_slice(simd, sums) + ratio * ratio).store_slice(sums);
     }
 }
 
-/// From T_1 and `S = sum f_i (T_1 / T_i)^2` to `T = T_1 / sqrt(1 + S)` and `S / (1 + S)`.
+/// From T_1 and `S = sum (f_i T_1 / T_i)^2` to `T = T_1 / sqrt(1 + S)` and `S / (1 + S)`.
 #[simd]
 pub(super) fn finish_squares<S: Simd>(simd: S, times: &mut [f32], sums: &mut [f32]) {
     let lanes = S::f32s::LEN;
@@ -188,15 +181,15 @@ fn load<S: Simd>(simd: S, column: &[f32], here: &Range<usize>) -> S::f32s {
 
 /// Sums of powers of ratios, scaled by the largest ratio so far so that none overflows.
 pub(super) struct ScaledSums<'a> {
-    /// The largest T_1 / T_i, that of the trunk being 1.
+    /// The largest f_i T_1 / T_i, that of the trunk being 1.
     pub(super) largest: &'a mut [f32],
     /// `largest^-k`: the trunk's part.
     pub(super) of_trunk: &'a mut [f32],
-    /// `sum f_i (T_1 / T_i / largest)^k`.
+    /// `sum (f_i T_1 / T_i / largest)^k`.
     pub(super) of_branches: &'a mut [f32],
 }
 
-/// Adds `f (T_1 / T_2)^k` to the scaled sums.
+/// Adds `(f T_1 / T_2)^k` to the scaled sums.
 #[simd]
 pub(super) fn add_powers<S: Simd, const REACH: bool>(
     simd: S,
@@ -218,14 +211,14 @@ pub(super) fn add_powers<S: Simd, const REACH: bool>(
             continue;
         }
         let trunk = load(simd, trunk, &here);
-        let [ratio, fade] = ratio_and_fade::<S, REACH>(simd, branch, &seen, trunk);
+        let ratio = ratio::<S, REACH>(simd, branch, &seen, trunk);
         let before = load(simd, sums.largest, &here);
         let largest = before.max(ratio);
         let raised = raise(simd, before.min(ratio) / largest, power);
         let of_trunk = load(simd, sums.of_trunk, &here);
         let of_branches = load(simd, sums.of_branches, &here);
         let leads = ratio.simd_gt(before);
-        let of_branches = leads.select(of_branches * raised + fade, of_branches + fade * raised);
+        let of_branches = leads.select(of_branches * raised + 1.0, of_branches + raised);
         largest.store_slice(&mut sums.largest[here.clone()]);
         leads
             .select(of_trunk * raised, of_trunk)
@@ -273,7 +266,7 @@ pub(super) fn take_least<S: Simd, const REACH: bool>(
         );
         let mut active = seen.along.simd_gt(LEAST_ALONG);
         if REACH {
-            active &= fade(simd, branch, &seen).simd_gt(0.0);
+            active &= fade::<S>(branch, &seen).simd_gt(0.0);
         }
         let [scale, time] = scale_and_time::<S>(branch, &seen);
         let (before, time) = (load(simd, least, &here), time / scale);

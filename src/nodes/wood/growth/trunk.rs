@@ -4,9 +4,10 @@ use super::GrowthModel;
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
+use std::ops::RangeInclusive;
 
-/// Lanes of the widest vectors there are.
-pub(super) const MOST_LANES: usize = 16;
+/// A vector of heights in so many pieces is evaluated piece by piece, others lane by lane.
+const MOST_AT_ONCE: usize = 4;
 
 /// Most entries of the table that finds pieces by height.
 const MOST_BUCKETS: usize = 1 << 16;
@@ -18,14 +19,22 @@ const MOST_BUCKETS: usize = 1 << 16;
 pub(super) struct TrunkTable {
     bounds: Vec<f32>,
     pieces: Vec<PieceConstants>,
-    /// For every bucket of heights the lowest piece in it.
-    buckets: Vec<u32>,
+    buckets: Vec<Bucket>,
     lowest: f32,
     buckets_per_millimetre: f32,
     /// Steps of the search inside a bucket.
     rounds: u32,
     years_along: f32,
     years_across: f32,
+}
+
+/// A range of heights. All buckets are equally high, and most hold one node at most.
+#[derive(Clone, Copy, Debug)]
+struct Bucket {
+    /// The piece at its lower end.
+    first: u32,
+    /// Height of the next node, in this bucket or above.
+    next: f32,
 }
 
 /// `(x, y) = c0 + h (c1 + h (c2 + h c3))` with `h = z - start`.
@@ -71,25 +80,36 @@ impl TrunkTable {
         table
     }
 
-    /// Fills the table of buckets: `buckets[b]` is the number of nodes in lower buckets.
     fn sort_into_buckets(&mut self, nodes: &[f32]) {
         let count = (2 * nodes.len()).min(MOST_BUCKETS);
         let length = nodes[nodes.len() - 1] - nodes[0];
-        self.buckets = vec![0; count + 1];
+        self.buckets = vec![
+            Bucket {
+                first: 0,
+                next: f32::INFINITY
+            };
+            count
+        ];
         self.buckets_per_millimetre = if length > 0.0 {
             (count - 1) as f32 / length
         } else {
             0.0
         };
-        for node in nodes {
-            let bucket = self.bucket(*node);
-            self.buckets[bucket + 1] += 1;
+        let mut fullest = 0;
+        let (mut first, mut end) = (0, 0);
+        for bucket in 0..count {
+            while end < nodes.len() && self.bucket(nodes[end]) == bucket {
+                end += 1;
+            }
+            let next = nodes.get(first).copied().unwrap_or(f32::INFINITY);
+            self.buckets[bucket] = Bucket {
+                first: first as u32,
+                next,
+            };
+            fullest = fullest.max(end - first);
+            first = end;
         }
-        let fullest = self.buckets.iter().copied().max().unwrap_or(0);
         self.rounds = fullest.checked_ilog2().map_or(0, |log| log + 1);
-        for bucket in 1..=count {
-            self.buckets[bucket] += self.buckets[bucket - 1];
-        }
         // The search may look this far beyond the last node.
         let beyond = std::iter::repeat_n(f32::INFINITY, 1 << self.rounds);
         self.bounds = std::iter::once(f32::NEG_INFINITY)
@@ -100,7 +120,7 @@ impl TrunkTable {
 
     /// Never falls with z, whatever the rounding: that makes the search exact.
     fn bucket(&self, z: f32) -> usize {
-        (((z - self.lowest) * self.buckets_per_millimetre) as usize).min(self.buckets.len() - 2)
+        (((z - self.lowest) * self.buckets_per_millimetre) as usize).min(self.buckets.len() - 1)
     }
 
     /// The piece that holds height `z`.
@@ -110,7 +130,11 @@ impl TrunkTable {
 
     #[inline(always)]
     fn piece_in_bucket(&self, z: f32, bucket: usize) -> usize {
-        let mut piece = self.buckets[bucket] as usize;
+        let Bucket { first, next } = self.buckets[bucket];
+        let mut piece = first as usize;
+        if self.rounds <= 1 {
+            return piece + usize::from(next <= z);
+        }
         for round in (0..self.rounds).rev() {
             let step = 1 << round;
             piece += if self.bounds[piece + step] <= z {
@@ -128,37 +152,82 @@ impl TrunkTable {
 pub(super) fn trunk_times<S: Simd>(
     simd: S,
     table: &TrunkTable,
-    [x, y, z]: [&[f32]; 3],
+    position: [&[f32]; 3],
     times: &mut [f32],
 ) {
+    // In two passes: what one lane at a time has stored cannot be loaded as a vector at once.
+    squares_across(simd, table, position, times);
     let lanes = S::f32s::LEN;
-    let mut piece = table.piece(z[0]);
+    for (z, times) in position[2]
+        .chunks_exact(lanes)
+        .zip(times.chunks_exact_mut(lanes))
+    {
+        let across = S::f32s::from_slice(simd, times).sqrt();
+        let along = S::f32s::from_slice(simd, z);
+        (along * table.years_along + across * table.years_across).store_slice(times);
+    }
+}
+
+/// Writes the squares of the distances from the curve.
+#[simd]
+fn squares_across<S: Simd>(
+    simd: S,
+    table: &TrunkTable,
+    [x, y, z]: [&[f32]; 3],
+    squares: &mut [f32],
+) {
+    let lanes = S::f32s::LEN;
+    let first = table.piece(z[0]);
+    let mut pieces = first..=first;
     let columns = x
         .chunks_exact(lanes)
         .zip(y.chunks_exact(lanes))
         .zip(z.chunks_exact(lanes));
-    for (((x, y), z), times) in columns.zip(times.chunks_exact_mut(lanes)) {
+    for (((x, y), z), squares) in columns.zip(squares.chunks_exact_mut(lanes)) {
         let height = S::f32s::from_slice(simd, z);
-        if !holds(simd, table, piece, height) {
-            piece = table.piece(z[0]);
+        if !hold(simd, table, &pieces, height) {
+            let ends = [table.piece(z[0]), table.piece(z[lanes - 1])];
+            pieces = ends[0].min(ends[1])..=ends[0].max(ends[1]);
         }
-        let square = if holds(simd, table, piece, height) {
-            square_in_piece(simd, &table.pieces[piece], x, y, height)
+        if pieces.end() - pieces.start() < MOST_AT_ONCE && hold(simd, table, &pieces, height) {
+            squares_in_pieces(simd, table, &pieces, [x, y], height).store_slice(squares);
         } else {
-            square_by_lane(simd, table, [x, y, z], height)
-        };
-        let time = height * table.years_along + square.sqrt() * table.years_across;
-        time.store_slice(times);
+            squares_by_lane(simd, table, [x, y, z], height, squares);
+        }
     }
 }
 
-/// Whether all heights are in one piece.
+/// Whether all heights are in these pieces.
 #[inline(always)]
-fn holds<S: Simd>(simd: S, table: &TrunkTable, piece: usize, height: S::f32s) -> bool {
+fn hold<S: Simd>(
+    simd: S,
+    table: &TrunkTable,
+    pieces: &RangeInclusive<usize>,
+    height: S::f32s,
+) -> bool {
     let _ = simd;
-    let above = height.simd_ge(table.bounds[piece]);
-    let below = height.simd_lt(table.bounds[piece + 1]);
+    let above = height.simd_ge(table.bounds[*pieces.start()]);
+    let below = height.simd_lt(table.bounds[*pieces.end() + 1]);
     (above & below).all_true()
+}
+
+/// The squares where all heights are in these few pieces.
+#[inline(always)]
+fn squares_in_pieces<S: Simd>(
+    simd: S,
+    table: &TrunkTable,
+    pieces: &RangeInclusive<usize>,
+    [x, y]: [&[f32]; 2],
+    height: S::f32s,
+) -> S::f32s {
+    let [start, end] = [*pieces.start(), *pieces.end()];
+    let mut squares = square_in_piece(simd, &table.pieces[start], x, y, height);
+    for piece in start + 1..=end {
+        let inside = height.simd_ge(table.bounds[piece]);
+        let upper = square_in_piece(simd, &table.pieces[piece], x, y, height);
+        squares = inside.select(upper, squares);
+    }
+    squares
 }
 
 #[inline(always)]
@@ -179,16 +248,16 @@ fn square_in_piece<S: Simd>(
 
 /// The same where every lane may be in another piece.
 #[inline(always)]
-fn square_by_lane<S: Simd>(
+fn squares_by_lane<S: Simd>(
     simd: S,
     table: &TrunkTable,
     [x, y, z]: [&[f32]; 3],
     height: S::f32s,
-) -> S::f32s {
+    squares: &mut [f32],
+) {
     let bucket = (height - table.lowest) * table.buckets_per_millimetre;
-    let last = table.buckets.len() - 2;
+    let last = table.buckets.len() - 1;
     let buckets: S::i32s = bucket.max(0.0).min(last as f32).to_int();
-    let mut squares = [0.0; MOST_LANES];
     for first in (0..S::f32s::LEN).step_by(4) {
         let four = first..first + 4;
         let mut pieces = [&table.pieces[0]; 4];
@@ -197,13 +266,12 @@ fn square_by_lane<S: Simd>(
             *piece = &table.pieces[table.piece_in_bucket(z[first + lane], bucket)];
         }
         let position = [&x[four.clone()], &y[four.clone()], &z[four.clone()]];
-        square_in_pieces(simd, pieces, position).store_slice(&mut squares[four]);
+        squares_of_four(simd, pieces, position).store_slice(&mut squares[four]);
     }
-    S::f32s::from_slice(simd, &squares[..S::f32s::LEN])
 }
 
 #[inline(always)]
-fn square_in_pieces<S: Simd>(
+fn squares_of_four<S: Simd>(
     simd: S,
     [a, b, c, d]: [&PieceConstants; 4],
     [x, y, z]: [&[f32]; 3],
