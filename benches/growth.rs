@@ -335,7 +335,8 @@ fn median(mut numbers: Vec<f64>) -> f64 {
 
 /// Prints a row of medians of pairs: A, B and A / B.
 fn compare(name: &str, mut a: impl FnMut(), mut b: impl FnMut()) {
-    (a(), b());
+    a();
+    b();
     let pairs: Vec<[f64; 2]> = (0..PAIRS).map(|_| [time(&mut a), time(&mut b)]).collect();
     let of = |part: fn(&[f64; 2]) -> f64| median(pairs.iter().map(part).collect());
     let [first, second, ratio] = [of(|p| p[0]), of(|p| p[1]), of(|p| p[0] / p[1])];

@@ -1,6 +1,8 @@
 //! Growth time by the trunk alone, for columns of positions.
 
 use super::GrowthModel;
+use super::heights::Heights;
+use crate::geometry::spline::Piece;
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -9,32 +11,13 @@ use std::ops::RangeInclusive;
 /// A vector of heights in so many pieces is evaluated piece by piece, others lane by lane.
 const MOST_AT_ONCE: usize = 4;
 
-/// Most entries of the table that finds pieces by height.
-const MOST_BUCKETS: usize = 1 << 16;
-
 /// The trunk's curve, laid out to be looked up by height.
-///
-/// Piece i of the curve holds the heights from `bounds[i]` up to, not including, `bounds[i + 1]`.
 #[derive(Debug)]
 pub(super) struct TrunkTable {
-    bounds: Vec<f32>,
+    heights: Heights,
     pieces: Vec<PieceConstants>,
-    buckets: Vec<Bucket>,
-    lowest: f32,
-    buckets_per_millimetre: f32,
-    /// Steps of the search inside a bucket.
-    rounds: u32,
     years_along: f32,
     years_across: f32,
-}
-
-/// A range of heights. All buckets are equally high, and most hold one node at most.
-#[derive(Clone, Copy, Debug)]
-struct Bucket {
-    /// The piece at its lower end.
-    first: u32,
-    /// Height of the next node, in this bucket or above.
-    next: f32,
 }
 
 /// `(x, y) = c0 + h (c1 + h (c2 + h c3))` with `h = z - start`.
@@ -55,95 +38,28 @@ impl TrunkTable {
             .collect();
         let starts = std::iter::once(&nodes[0]).chain(&nodes);
         let pieces = model.curve.pieces();
-        let pieces =
-            // Counted from the rounded height, no piece is moved by rounding its start.
-            pieces.iter().zip(starts).map(|(piece, start)| {
-                let [c0, c1, c2, c3] = piece.counted_from(f64::from(*start)).coefficients;
-                PieceConstants {
-                    start: *start,
-                    x: [c0.x, c1.x, c2.x, c3.x].map(|c| c as f32),
-                    y: [c0.y, c1.y, c2.y, c3.y].map(|c| c as f32),
-                }
-            });
-        let pieces = pieces.collect();
-        let mut table = TrunkTable {
-            bounds: vec![],
-            pieces,
-            buckets: vec![],
-            lowest: nodes[0],
-            buckets_per_millimetre: 0.0,
-            rounds: 0,
+        TrunkTable {
+            heights: Heights::new(&nodes),
+            pieces: pieces
+                .iter()
+                .zip(starts)
+                .map(|(p, z)| PieceConstants::new(p, *z))
+                .collect(),
             years_along: (1.0 / model.settings.elongation) as f32,
             years_across: (1.0 / model.settings.thickening) as f32,
-        };
-        table.sort_into_buckets(&nodes);
-        table
-    }
-
-    fn sort_into_buckets(&mut self, nodes: &[f32]) {
-        let count = (2 * nodes.len()).min(MOST_BUCKETS);
-        let length = nodes[nodes.len() - 1] - nodes[0];
-        self.buckets = vec![
-            Bucket {
-                first: 0,
-                next: f32::INFINITY
-            };
-            count
-        ];
-        self.buckets_per_millimetre = if length > 0.0 {
-            (count - 1) as f32 / length
-        } else {
-            0.0
-        };
-        let mut fullest = 0;
-        let (mut first, mut end) = (0, 0);
-        for bucket in 0..count {
-            while end < nodes.len() && self.bucket(nodes[end]) == bucket {
-                end += 1;
-            }
-            let next = nodes.get(first).copied().unwrap_or(f32::INFINITY);
-            self.buckets[bucket] = Bucket {
-                first: first as u32,
-                next,
-            };
-            fullest = fullest.max(end - first);
-            first = end;
         }
-        self.rounds = fullest.checked_ilog2().map_or(0, |log| log + 1);
-        // The search may look this far beyond the last node.
-        let beyond = std::iter::repeat_n(f32::INFINITY, 1 << self.rounds);
-        self.bounds = std::iter::once(f32::NEG_INFINITY)
-            .chain(nodes.iter().copied())
-            .chain(beyond)
-            .collect();
     }
+}
 
-    /// Never falls with z, whatever the rounding: that makes the search exact.
-    fn bucket(&self, z: f32) -> usize {
-        (((z - self.lowest) * self.buckets_per_millimetre) as usize).min(self.buckets.len() - 1)
-    }
-
-    /// The piece that holds height `z`.
-    fn piece(&self, z: f32) -> usize {
-        self.piece_in_bucket(z, self.bucket(z))
-    }
-
-    #[inline(always)]
-    fn piece_in_bucket(&self, z: f32, bucket: usize) -> usize {
-        let Bucket { first, next } = self.buckets[bucket];
-        let mut piece = first as usize;
-        if self.rounds <= 1 {
-            return piece + usize::from(next <= z);
+impl PieceConstants {
+    /// Counted from the rounded height `start`, a piece is not moved by the rounding.
+    fn new(piece: &Piece, start: f32) -> PieceConstants {
+        let [c0, c1, c2, c3] = piece.counted_from(f64::from(start)).coefficients;
+        PieceConstants {
+            start,
+            x: [c0.x, c1.x, c2.x, c3.x].map(|c| c as f32),
+            y: [c0.y, c1.y, c2.y, c3.y].map(|c| c as f32),
         }
-        for round in (0..self.rounds).rev() {
-            let step = 1 << round;
-            piece += if self.bounds[piece + step] <= z {
-                step
-            } else {
-                0
-            };
-        }
-        piece
     }
 }
 
@@ -177,7 +93,7 @@ fn squares_across<S: Simd>(
     squares: &mut [f32],
 ) {
     let lanes = S::f32s::LEN;
-    let first = table.piece(z[0]);
+    let first = table.heights.piece(z[0]);
     let mut pieces = first..=first;
     let columns = x
         .chunks_exact(lanes)
@@ -185,30 +101,17 @@ fn squares_across<S: Simd>(
         .zip(z.chunks_exact(lanes));
     for (((x, y), z), squares) in columns.zip(squares.chunks_exact_mut(lanes)) {
         let height = S::f32s::from_slice(simd, z);
-        if !hold(simd, table, &pieces, height) {
-            let ends = [table.piece(z[0]), table.piece(z[lanes - 1])];
+        if !table.heights.hold(simd, &pieces, height) {
+            let ends = [table.heights.piece(z[0]), table.heights.piece(z[lanes - 1])];
             pieces = ends[0].min(ends[1])..=ends[0].max(ends[1]);
         }
-        if pieces.end() - pieces.start() < MOST_AT_ONCE && hold(simd, table, &pieces, height) {
+        if pieces.end() - pieces.start() < MOST_AT_ONCE && table.heights.hold(simd, &pieces, height)
+        {
             squares_in_pieces(simd, table, &pieces, [x, y], height).store_slice(squares);
         } else {
             squares_by_lane(simd, table, [x, y, z], height, squares);
         }
     }
-}
-
-/// Whether all heights are in these pieces.
-#[inline(always)]
-fn hold<S: Simd>(
-    simd: S,
-    table: &TrunkTable,
-    pieces: &RangeInclusive<usize>,
-    height: S::f32s,
-) -> bool {
-    let _ = simd;
-    let above = height.simd_ge(table.bounds[*pieces.start()]);
-    let below = height.simd_lt(table.bounds[*pieces.end() + 1]);
-    (above & below).all_true()
 }
 
 /// The squares where all heights are in these few pieces.
@@ -223,7 +126,7 @@ fn squares_in_pieces<S: Simd>(
     let [start, end] = [*pieces.start(), *pieces.end()];
     let mut squares = square_in_piece(simd, &table.pieces[start], x, y, height);
     for piece in start + 1..=end {
-        let inside = height.simd_ge(table.bounds[piece]);
+        let inside = height.simd_ge(table.heights.start(piece));
         let upper = square_in_piece(simd, &table.pieces[piece], x, y, height);
         squares = inside.select(upper, squares);
     }
@@ -255,15 +158,15 @@ fn squares_by_lane<S: Simd>(
     height: S::f32s,
     squares: &mut [f32],
 ) {
-    let bucket = (height - table.lowest) * table.buckets_per_millimetre;
-    let last = table.buckets.len() - 1;
-    let buckets: S::i32s = bucket.max(0.0).min(last as f32).to_int();
+    let buckets = table.heights.buckets(simd, height);
     for first in (0..S::f32s::LEN).step_by(4) {
         let four = first..first + 4;
         let mut pieces = [&table.pieces[0]; 4];
         for (lane, piece) in pieces.iter_mut().enumerate() {
-            let bucket = (buckets[first + lane] as usize).min(last);
-            *piece = &table.pieces[table.piece_in_bucket(z[first + lane], bucket)];
+            let index = table
+                .heights
+                .piece_of_lane(z[first + lane], buckets[first + lane]);
+            *piece = &table.pieces[index];
         }
         let position = [&x[four.clone()], &y[four.clone()], &z[four.clone()]];
         squares_of_four(simd, pieces, position).store_slice(&mut squares[four]);
@@ -304,63 +207,4 @@ fn transposed<S: Simd>(simd: S, [a, b, c, d]: [&[f32; 4]; 4]) -> [f32x4<S>; 4] {
         high_ac.zip_low(high_bd),
         high_ac.zip_high(high_bd),
     ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::GrowthSettings;
-    use super::*;
-    use crate::value::{Skeleton, Tangents};
-    use glam::DVec3;
-
-    fn table(heights: &[f64]) -> TrunkTable {
-        let trunk = heights.iter().map(|z| DVec3::new(0.0, 0.0, *z)).collect();
-        let skeleton = Skeleton {
-            trunk,
-            tangents: Tangents::Natural,
-            branches: vec![],
-        };
-        let settings = GrowthSettings {
-            elongation: 1.0,
-            thickening: 1.0,
-            sharpness: 2.0,
-            reach: None,
-        };
-        TrunkTable::new(&GrowthModel::new(&skeleton, settings).unwrap())
-    }
-
-    #[test]
-    fn every_height_is_found_in_its_piece_whatever_the_spacing() {
-        let even: Vec<f64> = (0..1000).map(f64::from).collect();
-        let crowded: Vec<f64> = (0..500)
-            .map(|i| 1e-4 * f64::from(i))
-            .chain([1e3, 4e3])
-            .collect();
-        let growing: Vec<f64> = (0..60).map(|i| libm::exp2(0.3 * f64::from(i))).collect();
-        for heights in [even, crowded, growing, vec![-5.0, 5.0]] {
-            let table = table(&heights);
-            for node in heights.iter().map(|z| *z as f32) {
-                for z in [
-                    node.next_down(),
-                    node,
-                    node.next_up(),
-                    node + 0.3,
-                    node - 0.3,
-                ] {
-                    let expected = heights.iter().filter(|node| **node as f32 <= z).count();
-                    assert_eq!(table.piece(z), expected, "z = {z}");
-                }
-            }
-            assert_eq!(table.piece(-1e30), 0);
-            assert_eq!(table.piece(1e30), heights.len());
-        }
-    }
-
-    #[test]
-    fn even_spacing_needs_one_step_in_a_bucket() {
-        assert_eq!(
-            table(&(0..10_000).map(|i| 0.4 * f64::from(i)).collect::<Vec<_>>()).rounds,
-            1
-        );
-    }
 }
