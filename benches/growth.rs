@@ -36,16 +36,31 @@ impl Target for Plane {
         let scale = 1.0 / f64::from(SIZE);
         let right = DVec3::new(380.0, 60.0, 400.0) * scale;
         let down = DVec3::new(-20.0, 180.0, 1800.0) * scale;
-        let origin = DVec3::new(-180.0, -120.0, 100.0) + down * y;
+        let origin = DVec3::new(-180.0, -120.0, 100.0) + right * x + down * y;
         for (axis, row) in row.into_iter().enumerate() {
-            for (index, value) in row.iter_mut().enumerate() {
-                *value = (origin[axis] + (x + index as f64 * step) * right[axis]) as f32;
+            let (origin, step) = (origin[axis], step * right[axis]);
+            for (index, value) in (0i32..).zip(row) {
+                *value = (origin + f64::from(index) * step) as f32;
             }
         }
     }
 }
 
 fn model(nodes: usize, branches: usize, reach: Option<Reach>, sharpness: f64) -> GrowthModel {
+    grown(&skeleton(nodes, branches), reach, sharpness)
+}
+
+fn grown(skeleton: &Skeleton, reach: Option<Reach>, sharpness: f64) -> GrowthModel {
+    let settings = GrowthSettings {
+        elongation: 420.0,
+        thickening: 2.4,
+        sharpness,
+        reach,
+    };
+    GrowthModel::new(skeleton, settings).expect("the bench's tree is sound")
+}
+
+fn skeleton(nodes: usize, branches: usize) -> Skeleton {
     let node = |index: usize| {
         let share = index as f64 / (nodes - 1) as f64;
         DVec3::new(
@@ -63,18 +78,28 @@ fn model(nodes: usize, branches: usize, reach: Option<Reach>, sharpness: f64) ->
             thickness: Thickness::Speed(0.5),
         }
     };
-    let skeleton = Skeleton {
+    Skeleton {
         trunk: (0..nodes).map(node).collect(),
         tangents: Tangents::Natural,
         branches: (0..branches).map(branch).collect(),
-    };
-    let settings = GrowthSettings {
-        elongation: 420.0,
-        thickening: 2.4,
-        sharpness,
-        reach,
-    };
-    GrowthModel::new(&skeleton, settings).expect("the bench's tree is sound")
+    }
+}
+
+/// A tree with 100 branches in every 2400 mm of its height.
+fn tall(times: usize, reach: Option<Reach>) -> GrowthModel {
+    let mut skeleton = skeleton(64, 100);
+    let (trunk, branches) = (skeleton.trunk.clone(), skeleton.branches.clone());
+    for floor in (1..times).map(|floor| HEIGHT * floor as f64) {
+        // The first node of a floor would lie on the last one of the floor below.
+        let above = |node: &DVec3| *node + DVec3::Z * floor;
+        skeleton.trunk.extend(trunk[1..].iter().map(above));
+        let above = |branch: &Branch| Branch {
+            height: branch.height + floor,
+            ..*branch
+        };
+        skeleton.branches.extend(branches.iter().map(above));
+    }
+    grown(&skeleton, reach, 2.0)
 }
 
 fn tiles() -> impl Iterator<Item = [u32; 2]> {
@@ -100,9 +125,16 @@ impl Library {
     fn new(model: &GrowthModel, level: Level) -> Library {
         let kernel = Arc::new(GrowthKernel::new(model.clone()));
         let position = Field::position(Domain::Solid);
-        let field = Field::kernel(&Arc::from("bench"), kernel, vec![position]);
+        Library::of(
+            &Field::kernel(&Arc::from("bench"), kernel, vec![position]),
+            level,
+        )
+    }
+
+    fn of(field: &Field, level: Level) -> Library {
+        let program = Program::compile(std::slice::from_ref(field));
         Library {
-            program: Program::compile(&[field]),
+            program,
             scratch: Scratch::default(),
             level,
         }
@@ -238,16 +270,23 @@ fn trunk_by_hand<S: Simd>(
         .zip(y.chunks_exact(lanes))
         .zip(z.chunks_exact(lanes));
     for (((x, y), z), times) in columns.zip(times.chunks_exact_mut(lanes)) {
-        let [x, y, z] = [x, y, z].map(|column| S::f32s::from_slice(simd, column));
+        let x = S::f32s::from_slice(simd, x);
+        let y = S::f32s::from_slice(simd, y);
+        let z = S::f32s::from_slice(simd, z);
         let indices = (z * (1.0 / spacing)).to_int::<S::i32s>();
         let h = z - indices.to_float::<S::f32s>() * spacing;
         let first = indices[0];
         let segment = |index: i32| &segments[(index as usize).min(segments.len() - 1)];
+        let mut gathered = [[0.0; 16]; 8];
         let c: [S::f32s; 8] = if indices.simd_eq(first).all_true() {
             let segment = segment(first);
             std::array::from_fn(|part| S::f32s::splat(simd, segment[part]))
         } else {
-            std::array::from_fn(|part| S::f32s::from_fn(simd, |lane| segment(indices[lane])[part]))
+            for lane in 0..lanes {
+                let segment = segment(indices[lane]);
+                (0..8).for_each(|part| gathered[part][lane] = segment[part]);
+            }
+            std::array::from_fn(|part| S::f32s::from_slice(simd, &gathered[part][..lanes]))
         };
         let dx = (x - c[0]) - h * (h * (h * c[3] + c[2]) + c[1]);
         let dy = (y - c[4]) - h * (h * (h * c[7] + c[6]) + c[5]);
@@ -270,18 +309,21 @@ fn branch_by_hand<S: Simd>(
         .zip(z.chunks_exact(lanes));
     let results = trunk.chunks_exact(lanes).zip(sums.chunks_exact_mut(lanes));
     for (((x, y), z), (trunk, sums)) in columns.zip(results) {
-        let part = |column: &[f32], axis: usize| {
-            S::f32s::from_slice(simd, column) - branch.start[axis] - branch.rest[axis]
-        };
-        let (x, y, z) = (part(x, 0), part(y, 1), part(z, 2));
+        let x = S::f32s::from_slice(simd, x) - branch.start[0] - branch.rest[0];
+        let y = S::f32s::from_slice(simd, y) - branch.start[1] - branch.rest[1];
+        let z = S::f32s::from_slice(simd, z) - branch.start[2] - branch.rest[2];
         let [ux, uy, uz] = branch.direction;
         let s = x * ux + y * uy + z * uz;
+        let ahead = s.simd_gt(1e-9);
+        if ahead.all_false() {
+            continue;
+        }
         let (fx, fy, fz) = (x - s * ux, y - s * uy, z - s * uz);
         let across2 = fx * fx + fy * fy + fz * fz;
         let across = (across2 * (across2 + s * s)).sqrt();
         let time = s * (s * branch.speed_ratio + branch.speed_time) + across;
         let ratio = S::f32s::from_slice(simd, trunk) * (s * branch.speed) / time;
-        let ratio = s.simd_gt(1e-9).select(ratio, S::f32s::splat(simd, 0.0));
+        let ratio = ahead.select(ratio, S::f32s::splat(simd, 0.0));
         (S::f32s::from_slice(simd, sums) + ratio * ratio).store_slice(sums);
     }
 }
@@ -293,7 +335,8 @@ fn median(mut numbers: Vec<f64>) -> f64 {
 
 /// Prints a row of medians of pairs: A, B and A / B.
 fn compare(name: &str, mut a: impl FnMut(), mut b: impl FnMut()) {
-    (a(), b());
+    a();
+    b();
     let pairs: Vec<[f64; 2]> = (0..PAIRS).map(|_| [time(&mut a), time(&mut b)]).collect();
     let of = |part: fn(&[f64; 2]) -> f64| median(pairs.iter().map(part).collect());
     let [first, second, ratio] = [of(|p| p[0]), of(|p| p[1]), of(|p| p[0] / p[1])];
@@ -327,6 +370,16 @@ fn main() {
         );
     }
     let best = Level::new();
+    let mut positions = Library::of(&Field::position(Domain::Solid), best);
+    let mut library = Library::new(&plain, best);
+    compare(
+        "positions alone against library",
+        || positions.run(),
+        || library.run(),
+    );
+    if std::env::args().any(|argument| argument == "--short") {
+        return;
+    }
     for nodes in [64, 1024, 10_000] {
         let mut ten = Library::new(&model(10, 3, None, 2.0), best);
         let mut many = Library::new(&model(nodes, 3, None, 2.0), best);
@@ -340,15 +393,20 @@ fn main() {
         along: 150.0,
         across: 25.0,
     });
-    for branches in [100, 1000, 10_000] {
-        let mut three = Library::new(&model(64, 3, reach, 2.0), best);
-        let mut many = Library::new(&model(64, branches, reach, 2.0), best);
-        compare(
-            &format!("{branches} branches against 3, with reach"),
-            || many.run(),
-            || three.run(),
-        );
+    for branches in [1000, 10_000] {
+        // A taller tree: the picture shows as many branches as before.
+        let mut hundred = Library::new(&tall(1, reach), best);
+        let mut many = Library::new(&tall(branches / 100, reach), best);
+        let name = format!("{branches} branches against 100, equally dense");
+        compare(&name, || many.run(), || hundred.run());
     }
+    let mut sparse = Library::new(&model(64, 100, reach, 2.0), best);
+    let mut dense = Library::new(&model(64, 1000, reach, 2.0), best);
+    compare(
+        "1000 branches against 100, ten times as dense",
+        || dense.run(),
+        || sparse.run(),
+    );
     for sharpness in [4.0, 3.3] {
         let mut two = Library::new(&plain, best);
         let mut other = Library::new(&model(64, 3, None, sharpness), best);

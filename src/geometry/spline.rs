@@ -12,12 +12,10 @@
 //! height between neighbours is less than 3.73 times the smallest. Beyond its ends the curve continues
 //! straight along the end tangents.
 
+use super::tangents::rising_tangents;
 use crate::value::Tangents;
 use glam::{DVec2, DVec3};
 use std::fmt;
-
-/// A tangent rises if its z is more than this share of its length: slopes stay finite.
-const LEAST_RISE: f64 = 1e-6;
 
 /// Why there is no curve through some nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,21 +127,7 @@ impl TrunkCurve {
     /// Fewer than two nodes, coordinates that are not finite, heights that do not rise strictly.
     pub fn through(nodes: &[DVec3], tangents: Tangents) -> Result<TrunkCurve, CurveError> {
         check(nodes)?;
-        let wanted = match tangents {
-            Tangents::Natural => natural_tangents(nodes),
-            Tangents::Local => local_tangents(nodes),
-        };
-        let tangents: Vec<DVec3> = wanted
-            .into_iter()
-            .enumerate()
-            .map(|(index, tangent)| {
-                if rises(tangent) {
-                    tangent
-                } else {
-                    chord(nodes, index)
-                }
-            })
-            .collect();
+        let tangents = rising_tangents(nodes, tangents);
         let slopes = tangents
             .iter()
             .map(|tangent| tangent.truncate() / tangent.z)
@@ -268,61 +252,6 @@ fn check(nodes: &[DVec3]) -> Result<(), CurveError> {
     }
 }
 
-fn rises(tangent: DVec3) -> bool {
-    tangent.z > LEAST_RISE * tangent.length()
-}
-
-/// What replaces a tangent that does not rise.
-fn chord(nodes: &[DVec3], index: usize) -> DVec3 {
-    let last = nodes.len() - 1;
-    match index {
-        0 => nodes[1] - nodes[0],
-        index if index == last => nodes[last] - nodes[last - 1],
-        index => (nodes[index + 1] - nodes[index - 1]) / 2.0,
-    }
-}
-
-/// Tangents of the natural cubic spline with uniform parameter: `2 D_0 + D_1 = 3 (N_1 - N_0)`,
-/// `D_(i-1) + 4 D_i + D_(i+1) = 3 (N_(i+1) - N_(i-1))`, `D_(m-1) + 2 D_m = 3 (N_m - N_(m-1))`.
-fn natural_tangents(nodes: &[DVec3]) -> Vec<DVec3> {
-    let last = nodes.len() - 1;
-    // Elimination from the bottom up: D_i = value_i - factor_i D_(i+1).
-    let mut factors = vec![0.5];
-    let mut values = vec![(nodes[1] - nodes[0]) * 1.5];
-    for index in 1..=last {
-        let (diagonal, right) = if index == last {
-            (2.0, (nodes[last] - nodes[last - 1]) * 3.0)
-        } else {
-            (4.0, (nodes[index + 1] - nodes[index - 1]) * 3.0)
-        };
-        let pivot = diagonal - factors[index - 1];
-        let value = (right - values[index - 1]) / pivot;
-        factors.push(1.0 / pivot);
-        values.push(value);
-    }
-    for index in (0..last).rev() {
-        let next = values[index + 1];
-        values[index] -= next * factors[index];
-    }
-    values
-}
-
-/// Tangents by eq. (4) on sliding triples of nodes; two nodes are joined by a straight line.
-fn local_tangents(nodes: &[DVec3]) -> Vec<DVec3> {
-    let last = nodes.len() - 1;
-    if last == 1 {
-        return vec![nodes[1] - nodes[0]; 2];
-    }
-    let tangent = |index: usize| match index {
-        0 => (nodes[1] * 6.0 - nodes[0] * 5.0 - nodes[2]) / 4.0,
-        index if index == last => {
-            (nodes[last - 2] - nodes[last - 1] * 6.0 + nodes[last] * 5.0) / 4.0
-        }
-        index => (nodes[index + 1] - nodes[index - 1]) / 2.0,
-    };
-    (0..=last).map(tangent).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -344,32 +273,6 @@ mod tests {
             assert!(curve.at(-3.0).distance(DVec3::new(-3.0, 2.0, -3.0)) < 1e-12);
             assert!(curve.at(9.0).distance(DVec3::new(6.0, -2.5, 9.0)) < 1e-12);
         }
-    }
-
-    #[test]
-    fn natural_tangents_make_second_derivatives_meet_and_vanish_at_the_ends() {
-        let nodes = nodes(&[0.0, 1.0, 2.5, 3.0, 5.0, 6.0]);
-        let d = natural_tangents(&nodes);
-        let chord = |i: usize| nodes[i + 1] - nodes[i];
-        let start = |i: usize| chord(i) * 6.0 - d[i] * 4.0 - d[i + 1] * 2.0;
-        let end = |i: usize| d[i] * 2.0 + d[i + 1] * 4.0 - chord(i) * 6.0;
-        assert!(start(0).length() < 1e-12 && end(4).length() < 1e-12);
-        (1..5).for_each(|i| assert!((start(i) - end(i - 1)).length() < 1e-12));
-    }
-
-    #[test]
-    fn tangents_that_do_not_rise_become_chords() {
-        // The limit for three nodes: the lower end tangent rises if dz_2 < 5 dz_1.
-        let rising = TrunkCurve::through(&nodes(&[0.0, 1.0, 5.99]), Tangents::Natural).unwrap();
-        assert_eq!(
-            rising.tangents[0],
-            natural_tangents(&nodes(&[0.0, 1.0, 5.99]))[0]
-        );
-        let points = nodes(&[0.0, 1.0, 6.01]);
-        let fallen = TrunkCurve::through(&points, Tangents::Natural).unwrap();
-        assert!(natural_tangents(&points)[0].z < 0.0);
-        assert_eq!(fallen.tangents[0], points[1] - points[0]);
-        assert_eq!(fallen.tangents[1..], natural_tangents(&points)[1..]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{grow_at, rounded, settings, tree};
 use glam::DVec3;
-use yosegi::nodes::wood::growth::{GrowthModel, GrowthSettings, Reach};
+use yosegi::nodes::wood::growth::{GrowingBranch, GrowthModel, GrowthSettings, Reach};
 use yosegi::value::{Skeleton, Tangents};
 
 /// Rows of points on a slice through the tree, from one corner along two directions.
@@ -91,18 +91,21 @@ fn without_branches_neighbours_differ_by_the_bound_on_any_slice() {
 
 /// A bound on |grad T| at the distances |P - b1| >= `distances`, where T_1 <= `trunk`.
 ///
-/// With k = 2, dT/dT_i = f_i (T / T_i)^3 <= 1. From T_gamma = rho |w| / (v_b s), for s >= rho its slopes are
-/// at most 3 / v_b and 1 / v_b. For s < rho they are at most 3 rho^2 / (v_b |w| s) and rho^3 / (v_b |w| s^2),
-/// and T / T_2 <= T_1 v_b s / (rho |w|) once or twice leaves 3 T_1 / |w| and T_1^2 v_b / |w|^2. The fade
-/// changes T by at most T / 2 for each unit of f, and its slopes are 3 / reach.
+/// With k = 2, `dT/dT_i = f^2 (T / T_i)^3`, and `f T <= T_i`: it is at most 1 for f = 1, and at most
+/// `q = max(1, T_1 / T_alpha)` otherwise. From T_gamma = rho |w| / (v_b s), for s >= rho its slopes are at most
+/// 3 / v_b and 1 / v_b. For s < rho they are at most 3 rho^2 / (v_b |w| s) and rho^3 / (v_b |w| s^2), and
+/// T / T_i <= T_1 v_b s / (rho |w|) once or twice leaves 3 T_1 / |w| and T_1^2 v_b / |w|^2. dT/df is at most
+/// T_1 q, and the slopes of f are 3 / reach.
 fn gradient(model: &GrowthModel, trunk: f64, distances: &[f64]) -> f64 {
-    let fading = |reach: Reach| 1.5 * trunk * (1.0 / reach.along + 1.0 / reach.across);
-    let of_fade = model.settings.reach.map_or(0.0, fading);
-    let of_branch = |(branch, w): (&yosegi::nodes::wood::growth::GrowingBranch, &f64)| {
+    let slope = |reach: Reach| 3.0 / reach.along + 3.0 / reach.across;
+    let of_fade = model.settings.reach.map_or(0.0, slope);
+    let of_branch = |(branch, w): (&GrowingBranch, &f64)| {
         let v = branch.thickening;
-        let across = 3.0 / v + 3.0 * trunk / w;
-        let along = 1.0 / v + trunk * trunk * v / (w * w);
-        1.0 / model.settings.elongation + across + along + of_fade
+        let faded = |_| (trunk / branch.start_time).max(1.0);
+        let q = model.settings.reach.map_or(1.0, faded);
+        let across = 3.0 * q / v + 3.0 * trunk / w;
+        let along = q / v + trunk * trunk * v / (w * w);
+        q / model.settings.elongation + across + along + of_fade * trunk * q
     };
     trunk_gradient(model)
         + model

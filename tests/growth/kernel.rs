@@ -25,7 +25,7 @@ fn model(skeleton: &Skeleton, sharpness: f64, reach: Option<Reach>) -> GrowthMod
     .unwrap()
 }
 
-/// Times within 1e-5 of the largest, shares within 1e-4, outside a ball of a thousandth of the trunk's
+/// Times within 1e-5 of the largest, shares within 2e-5, outside a ball of a thousandth of the trunk's
 /// length round every start.
 fn assert_agrees(model: &GrowthModel, points: &[DVec3]) {
     let [lowest, highest] = model.curve.heights();
@@ -54,7 +54,7 @@ fn assert_agrees(model: &GrowthModel, points: &[DVec3]) {
         );
         // Below the ground the share jumps where the smallest time does.
         assert!(
-            (branch - expected.branch).abs() <= 1e-4 || expected.time < 1e-4 * largest,
+            (branch - expected.branch).abs() <= 2e-5 || expected.time < 1e-4 * largest,
             "share at {at}: expected {}, found {branch}",
             expected.branch
         );

@@ -14,12 +14,13 @@
 //! would always be a right one. All branches together, with an exponent k (2 is eq. (18)) and a fade f:
 //!
 //! ```text
-//! T = (T_1^-k + sum f_i T_i^-k)^(-1/k)       branch = S / (1 + S),  S = sum f_i (T_1 / T_i)^k
+//! T = (T_1^-k + sum (T_i / f_i)^-k)^(-1/k)      branch = S / (1 + S),  S = sum (f_i T_1 / T_i)^k
 //! ```
 //!
-//! If the smallest time is 0 or less, which can be only below the ground, it is T. With a reach, f falls
+//! If the smallest T_i is 0 or less, which can be only below the ground, it is T. With a reach, f falls
 //! from 1 to 0 between half of the reach and the reach, with a continuous slope (smoothstep), along the
-//! axis and across it (own construction); without one, f = 1.
+//! axis and across it; without one, f = 1 (own construction). The fade divides the branch's time. As
+//! a factor of `T_i^-k` it would act all at once at the end of the reach, the more so the larger k.
 //!
 //! A branch given by its half width w at the distance L along it has its border there, `T_2 = T_1`:
 //! `v_b = w sqrt(L^2 + w^2) / (L (T_1 - z(b1) / v_e - L / v_e))`, with T_1 of the axis' point at L.

@@ -146,21 +146,25 @@ fn evaluate_block<S: Simd>(
 }
 
 /// The smallest and largest coordinates.
-#[simd]
-fn bounds<S: Simd>(simd: S, position: [&[f32]; 3]) -> Bounds {
-    let ends = position.map(|column| {
-        let first = S::f32s::splat(simd, column[0]);
-        let (mut low, mut high) = (first, first);
-        for values in column.chunks_exact(S::f32s::LEN) {
-            let values = S::f32s::from_slice(simd, values);
-            (low, high) = (low.min_precise(values), high.max_precise(values));
-        }
-        [low.reduce_min_precise(), high.reduce_max_precise()]
-    });
+#[inline(always)]
+fn bounds<S: Simd>(simd: S, [x, y, z]: [&[f32]; 3]) -> Bounds {
+    let ends = [ends(simd, x), ends(simd, y), ends(simd, z)];
     Bounds {
-        low: Vec3::from_array(ends.map(|[low, _]| low)),
-        high: Vec3::from_array(ends.map(|[_, high]| high)),
+        low: Vec3::new(ends[0][0], ends[1][0], ends[2][0]),
+        high: Vec3::new(ends[0][1], ends[1][1], ends[2][1]),
     }
+}
+
+#[inline(always)]
+fn ends<S: Simd>(simd: S, column: &[f32]) -> [f32; 2] {
+    let mut low = S::f32s::splat(simd, column[0]);
+    let mut high = low;
+    for values in column.chunks_exact(S::f32s::LEN) {
+        let values = S::f32s::from_slice(simd, values);
+        low = low.min_precise(values);
+        high = high.max_precise(values);
+    }
+    [low.reduce_min_precise(), high.reduce_max_precise()]
 }
 
 /// Samples with the branches near them.

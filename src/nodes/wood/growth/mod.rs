@@ -2,6 +2,7 @@
 //! evaluates it for columns of positions.
 
 mod branches;
+mod heights;
 mod kernel;
 pub(super) mod log_file;
 mod model;

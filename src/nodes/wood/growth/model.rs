@@ -63,7 +63,7 @@ pub struct BranchTerms {
     pub beta: f64,
     /// T_gamma: from the axis to the point, eq. (15).
     pub gamma: f64,
-    /// The part of the influence that the reach leaves, from 0 to 1.
+    /// What the reach leaves of the influence, from 0 to 1: it acts as if T_2 were divided by it.
     pub fade: f64,
 }
 
@@ -83,7 +83,7 @@ pub struct Terms {
     pub branches: Vec<Option<BranchTerms>>,
     /// T in years.
     pub time: f64,
-    /// Share of the branches in T: S / (1 + S) with `S = sum f_i (T_1 / T_i)^k`.
+    /// Share of the branches in T: S / (1 + S) with `S = sum (f_i T_1 / T_i)^k`.
     pub branch: f64,
 }
 
@@ -142,8 +142,8 @@ impl GrowthModel {
 
     /// When the wood at `point` (mm) grew, with all terms.
     ///
-    /// `T = (sum f_i T_i^-k)^(-1/k)` over the trunk (`f = 1`) and all branches; for k = 2 and without a
-    /// reach that is eq. (18) applied in turn. If the smallest time is 0 or less, it is T.
+    /// `T = (sum (f_i / T_i)^k)^(-1/k)` over the trunk (`f = 1`) and all branches; for k = 2 and without
+    /// a reach that is eq. (18) applied in turn. If the smallest T_i is 0 or less, it is T.
     pub fn terms(&self, point: DVec3) -> Terms {
         let trunk = self.trunk_time(point);
         let branches: Vec<_> = self
@@ -240,12 +240,12 @@ fn blend(trunk: f64, branches: &[(f64, f64)], sharpness: f64) -> (f64, f64) {
     if least <= 0.0 {
         return (least, if least < trunk { 1.0 } else { 0.0 });
     }
-    let weight = |time: f64| libm::pow(least / time, sharpness);
+    let weight = |time: f64, fade: f64| libm::pow(fade * least / time, sharpness);
     let of_branches: f64 = branches
         .iter()
-        .map(|(time, fade)| fade * weight(*time))
+        .map(|(time, fade)| weight(*time, *fade))
         .sum();
-    let total = weight(trunk) + of_branches;
+    let total = weight(trunk, 1.0) + of_branches;
     (
         least * libm::pow(total, -1.0 / sharpness),
         of_branches / total,
@@ -255,6 +255,6 @@ fn blend(trunk: f64, branches: &[(f64, f64)], sharpness: f64) -> (f64, f64) {
 /// 1 up to half the reach, 0 from the reach on, with a continuous slope.
 fn fade(distance: f64, reach: f64) -> f64 {
     let half = 0.5 * reach;
-    let t = ((distance - half) / half).clamp(0.0, 1.0);
-    1.0 - t * t * (3.0 - 2.0 * t)
+    let left = ((reach - distance) / half).clamp(0.0, 1.0);
+    left * left * (3.0 - 2.0 * left)
 }

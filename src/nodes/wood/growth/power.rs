@@ -1,7 +1,6 @@
 //! Powers and roots of positive vectors: the same bits at every vector width.
 
 use fearless_simd::prelude::*;
-use fearless_simd_macros::simd;
 
 /// The exponent k of the blend between trunk and branches.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,11 +25,16 @@ impl Power {
 }
 
 /// `x^k` for x from 0 to 1.
-#[simd]
-pub(super) fn raise<S: Simd>(simd: S, x: S::f32s, power: Power) -> S::f32s {
+#[inline(always)]
+pub(super) fn raise<S: Simd>(simd: S, mut x: S::f32s, power: Power) -> S::f32s {
     match power {
         Power::Square => x * x,
-        Power::Doublings(doublings) => (0..doublings).fold(x, |x, _| x * x),
+        Power::Doublings(doublings) => {
+            for _ in 0..doublings {
+                x *= x;
+            }
+            x
+        }
         Power::Any(exponent) => {
             let raised = exp2(simd, log2(simd, x.max(f32::MIN_POSITIVE)) * exponent);
             x.simd_gt(0.0).select(raised, S::f32s::splat(simd, 0.0))
@@ -39,18 +43,23 @@ pub(super) fn raise<S: Simd>(simd: S, x: S::f32s, power: Power) -> S::f32s {
 }
 
 /// `x^(-1/k)` for positive x.
-#[simd]
+#[inline(always)]
 pub(super) fn inverse_root<S: Simd>(simd: S, x: S::f32s, power: Power) -> S::f32s {
-    let inverse = || S::f32s::splat(simd, 1.0) / x;
+    let mut root = S::f32s::splat(simd, 1.0) / x;
     match power {
-        Power::Square => inverse().sqrt(),
-        Power::Doublings(doublings) => (0..doublings).fold(inverse(), |x, _| x.sqrt()),
+        Power::Square => root.sqrt(),
+        Power::Doublings(doublings) => {
+            for _ in 0..doublings {
+                root = root.sqrt();
+            }
+            root
+        }
         Power::Any(exponent) => exp2(simd, -log2(simd, x) * (1.0 / exponent)),
     }
 }
 
 /// Binary logarithm of positive normal numbers, within 2e-7 of the larger of 1 and its size.
-#[simd]
+#[inline(always)]
 fn log2<S: Simd>(simd: S, x: S::f32s) -> S::f32s {
     // x = 2^e m with m between sqrt(1/2) and sqrt(2).
     let bits: S::i32s = x.bitcast();
@@ -58,31 +67,33 @@ fn log2<S: Simd>(simd: S, x: S::f32s) -> S::f32s {
     let m: S::f32s = (bits - (exponent << 23)).bitcast();
     // ln m = 2 artanh((m - 1) / (m + 1)), whose series is cut where terms are below 1e-8.
     let s = (m - 1.0) / (m + 1.0);
-    let s2 = s * s;
-    let series = |coefficients: [f32; 5]| {
-        coefficients
-            .into_iter()
-            .fold(S::f32s::splat(simd, 0.0), |sum, c| sum * s2 + c)
-    };
-    let two_over_ln2 = 2.0 * std::f32::consts::LOG2_E;
-    let artanh = s * series([1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0]);
-    exponent.to_float::<S::f32s>() + artanh * two_over_ln2
+    let artanh = s * polynomial(simd, s * s, &ARTANH_SERIES);
+    exponent.to_float::<S::f32s>() + artanh * (2.0 * std::f32::consts::LOG2_E)
 }
 
 /// 2^x; beyond +-126 the value there.
-#[simd]
+#[inline(always)]
 fn exp2<S: Simd>(simd: S, x: S::f32s) -> S::f32s {
     // Adding it rounds to a whole number, since it leaves no room for a fraction.
     const ROUND: f32 = 12_582_912.0;
     let x = x.max(-126.0).min(126.0);
     let whole = (x + ROUND) - ROUND;
-    let fraction = x - whole;
-    let power = EXP2_SERIES
-        .into_iter()
-        .fold(S::f32s::splat(simd, 0.0), |sum, c| sum * fraction + c);
     let scale: S::f32s = ((whole.to_int::<S::i32s>() + 127) << 23).bitcast();
-    power * scale
+    polynomial(simd, x - whole, &EXP2_SERIES) * scale
 }
+
+/// The polynomial with these coefficients, the highest first.
+#[inline(always)]
+fn polynomial<S: Simd>(simd: S, x: S::f32s, coefficients: &[f32]) -> S::f32s {
+    let mut sum = S::f32s::splat(simd, 0.0);
+    for coefficient in coefficients {
+        sum = sum * x + *coefficient;
+    }
+    sum
+}
+
+/// The series of artanh(s) / s in s^2.
+const ARTANH_SERIES: [f32; 5] = [1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0];
 
 /// ln(2)^n / n! from n = 7 down to 0.
 const EXP2_SERIES: [f32; 8] = {
@@ -100,6 +111,7 @@ const EXP2_SERIES: [f32; 8] = {
 mod tests {
     use super::*;
     use fearless_simd::{Level, dispatch};
+    use fearless_simd_macros::simd;
 
     #[simd]
     fn both<S: Simd>(simd: S, x: f32, power: Power) -> [f32; 2] {

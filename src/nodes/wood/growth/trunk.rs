@@ -1,28 +1,21 @@
 //! Growth time by the trunk alone, for columns of positions.
 
 use super::GrowthModel;
+use super::heights::Heights;
+use crate::geometry::spline::Piece;
+use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
+use std::ops::RangeInclusive;
 
-/// Lanes of the widest vectors there are.
-pub(super) const MOST_LANES: usize = 16;
-
-/// Most entries of the table that finds pieces by height.
-const MOST_BUCKETS: usize = 1 << 16;
+/// A vector of heights in so many pieces is evaluated piece by piece, others lane by lane.
+const MOST_AT_ONCE: usize = 4;
 
 /// The trunk's curve, laid out to be looked up by height.
-///
-/// Piece i of the curve holds the heights from `bounds[i]` up to, not including, `bounds[i + 1]`.
 #[derive(Debug)]
 pub(super) struct TrunkTable {
-    bounds: Vec<f32>,
+    heights: Heights,
     pieces: Vec<PieceConstants>,
-    /// For every bucket of heights the lowest piece in it.
-    buckets: Vec<u32>,
-    lowest: f32,
-    buckets_per_millimetre: f32,
-    /// Steps of the search inside a bucket.
-    rounds: u32,
     years_along: f32,
     years_across: f32,
 }
@@ -45,86 +38,28 @@ impl TrunkTable {
             .collect();
         let starts = std::iter::once(&nodes[0]).chain(&nodes);
         let pieces = model.curve.pieces();
-        let pieces =
-            // Counted from the rounded height, no piece is moved by rounding its start.
-            pieces.iter().zip(starts).map(|(piece, start)| {
-                let [c0, c1, c2, c3] = piece.counted_from(f64::from(*start)).coefficients;
-                PieceConstants {
-                    start: *start,
-                    x: [c0.x, c1.x, c2.x, c3.x].map(|c| c as f32),
-                    y: [c0.y, c1.y, c2.y, c3.y].map(|c| c as f32),
-                }
-            });
-        let pieces = pieces.collect();
-        let mut table = TrunkTable {
-            bounds: vec![],
-            pieces,
-            buckets: vec![],
-            lowest: nodes[0],
-            buckets_per_millimetre: 0.0,
-            rounds: 0,
+        TrunkTable {
+            heights: Heights::new(&nodes),
+            pieces: pieces
+                .iter()
+                .zip(starts)
+                .map(|(p, z)| PieceConstants::new(p, *z))
+                .collect(),
             years_along: (1.0 / model.settings.elongation) as f32,
             years_across: (1.0 / model.settings.thickening) as f32,
-        };
-        table.sort_into_buckets(&nodes);
-        table
-    }
-
-    /// Fills the table of buckets: `buckets[b]` is the number of nodes in lower buckets.
-    fn sort_into_buckets(&mut self, nodes: &[f32]) {
-        let count = (2 * nodes.len()).min(MOST_BUCKETS);
-        let length = nodes[nodes.len() - 1] - nodes[0];
-        self.buckets = vec![0; count + 1];
-        self.buckets_per_millimetre = if length > 0.0 {
-            (count - 1) as f32 / length
-        } else {
-            0.0
-        };
-        for node in nodes {
-            let bucket = self.bucket(*node);
-            self.buckets[bucket + 1] += 1;
         }
-        let fullest = self.buckets.iter().copied().max().unwrap_or(0);
-        self.rounds = fullest.checked_ilog2().map_or(0, |log| log + 1);
-        for bucket in 1..=count {
-            self.buckets[bucket] += self.buckets[bucket - 1];
+    }
+}
+
+impl PieceConstants {
+    /// Counted from the rounded height `start`, a piece is not moved by the rounding.
+    fn new(piece: &Piece, start: f32) -> PieceConstants {
+        let [c0, c1, c2, c3] = piece.counted_from(f64::from(start)).coefficients;
+        PieceConstants {
+            start,
+            x: [c0.x, c1.x, c2.x, c3.x].map(|c| c as f32),
+            y: [c0.y, c1.y, c2.y, c3.y].map(|c| c as f32),
         }
-        // The search may look this far beyond the last node.
-        let beyond = std::iter::repeat_n(f32::INFINITY, 1 << self.rounds);
-        self.bounds = std::iter::once(f32::NEG_INFINITY)
-            .chain(nodes.iter().copied())
-            .chain(beyond)
-            .collect();
-    }
-
-    /// Never falls with z, whatever the rounding: that makes the search exact.
-    fn bucket(&self, z: f32) -> usize {
-        (((z - self.lowest) * self.buckets_per_millimetre) as usize).min(self.buckets.len() - 2)
-    }
-
-    /// The piece that holds height `z`.
-    fn piece(&self, z: f32) -> usize {
-        let mut piece = self.buckets[self.bucket(z)] as usize;
-        for round in (0..self.rounds).rev() {
-            let step = 1 << round;
-            piece += if self.bounds[piece + step] <= z {
-                step
-            } else {
-                0
-            };
-        }
-        piece
-    }
-
-    /// Square of the distance from the curve at the same height.
-    fn square_across(&self, x: f32, y: f32, z: f32) -> f32 {
-        let piece = &self.pieces[self.piece(z)];
-        let h = z - piece.start;
-        let [x0, x1, x2, x3] = piece.x;
-        let [y0, y1, y2, y3] = piece.y;
-        let dx = (x - x0) - h * (x1 + h * (x2 + h * x3));
-        let dy = (y - y0) - h * (y1 + h * (y2 + h * y3));
-        dx * dx + dy * dy
     }
 }
 
@@ -133,40 +68,72 @@ impl TrunkTable {
 pub(super) fn trunk_times<S: Simd>(
     simd: S,
     table: &TrunkTable,
-    [x, y, z]: [&[f32]; 3],
+    position: [&[f32]; 3],
     times: &mut [f32],
 ) {
+    // In two passes: what one lane at a time has stored cannot be loaded as a vector at once.
+    squares_across(simd, table, position, times);
     let lanes = S::f32s::LEN;
-    let mut piece = table.piece(z[0]);
+    for (z, times) in position[2]
+        .chunks_exact(lanes)
+        .zip(times.chunks_exact_mut(lanes))
+    {
+        let across = S::f32s::from_slice(simd, times).sqrt();
+        let along = S::f32s::from_slice(simd, z);
+        (along * table.years_along + across * table.years_across).store_slice(times);
+    }
+}
+
+/// Writes the squares of the distances from the curve.
+#[simd]
+fn squares_across<S: Simd>(
+    simd: S,
+    table: &TrunkTable,
+    [x, y, z]: [&[f32]; 3],
+    squares: &mut [f32],
+) {
+    let lanes = S::f32s::LEN;
+    let first = table.heights.piece(z[0]);
+    let mut pieces = first..=first;
     let columns = x
         .chunks_exact(lanes)
         .zip(y.chunks_exact(lanes))
         .zip(z.chunks_exact(lanes));
-    for (((x, y), z), times) in columns.zip(times.chunks_exact_mut(lanes)) {
+    for (((x, y), z), squares) in columns.zip(squares.chunks_exact_mut(lanes)) {
         let height = S::f32s::from_slice(simd, z);
-        if !holds(simd, table, piece, height) {
-            piece = table.piece(z[0]);
+        if !table.heights.hold(simd, &pieces, height) {
+            let ends = [table.heights.piece(z[0]), table.heights.piece(z[lanes - 1])];
+            pieces = ends[0].min(ends[1])..=ends[0].max(ends[1]);
         }
-        let square = if holds(simd, table, piece, height) {
-            square_in_piece(simd, &table.pieces[piece], x, y, height)
+        if pieces.end() - pieces.start() < MOST_AT_ONCE && table.heights.hold(simd, &pieces, height)
+        {
+            squares_in_pieces(simd, table, &pieces, [x, y], height).store_slice(squares);
         } else {
-            square_by_lane(simd, table, [x, y, z])
-        };
-        let time = height * table.years_along + square.sqrt() * table.years_across;
-        time.store_slice(times);
+            squares_by_lane(simd, table, [x, y, z], height, squares);
+        }
     }
 }
 
-/// Whether all heights are in one piece.
-#[simd]
-fn holds<S: Simd>(simd: S, table: &TrunkTable, piece: usize, height: S::f32s) -> bool {
-    let _ = simd;
-    let above = height.simd_ge(table.bounds[piece]);
-    let below = height.simd_lt(table.bounds[piece + 1]);
-    (above & below).all_true()
+/// The squares where all heights are in these few pieces.
+#[inline(always)]
+fn squares_in_pieces<S: Simd>(
+    simd: S,
+    table: &TrunkTable,
+    pieces: &RangeInclusive<usize>,
+    [x, y]: [&[f32]; 2],
+    height: S::f32s,
+) -> S::f32s {
+    let [start, end] = [*pieces.start(), *pieces.end()];
+    let mut squares = square_in_piece(simd, &table.pieces[start], x, y, height);
+    for piece in start + 1..=end {
+        let inside = height.simd_ge(table.heights.start(piece));
+        let upper = square_in_piece(simd, &table.pieces[piece], x, y, height);
+        squares = inside.select(upper, squares);
+    }
+    squares
 }
 
-#[simd]
+#[inline(always)]
 fn square_in_piece<S: Simd>(
     simd: S,
     piece: &PieceConstants,
@@ -175,78 +142,69 @@ fn square_in_piece<S: Simd>(
     height: S::f32s,
 ) -> S::f32s {
     let h = height - piece.start;
-    let across = |column: &[f32], [c0, c1, c2, c3]: [f32; 4]| {
-        let value = S::f32s::from_slice(simd, column);
-        (value - c0) - h * (h * (h * c3 + c2) + c1)
-    };
-    let (dx, dy) = (across(x, piece.x), across(y, piece.y));
+    let [x0, x1, x2, x3] = piece.x;
+    let [y0, y1, y2, y3] = piece.y;
+    let dx = (S::f32s::from_slice(simd, x) - x0) - h * (h * (h * x3 + x2) + x1);
+    let dy = (S::f32s::from_slice(simd, y) - y0) - h * (h * (h * y3 + y2) + y1);
     dx * dx + dy * dy
 }
 
-#[simd]
-fn square_by_lane<S: Simd>(simd: S, table: &TrunkTable, [x, y, z]: [&[f32]; 3]) -> S::f32s {
-    let mut squares = [0.0; MOST_LANES];
-    for (square, ((x, y), z)) in squares.iter_mut().zip(x.iter().zip(y).zip(z)) {
-        *square = table.square_across(*x, *y, *z);
+/// The same where every lane may be in another piece.
+#[inline(always)]
+fn squares_by_lane<S: Simd>(
+    simd: S,
+    table: &TrunkTable,
+    [x, y, z]: [&[f32]; 3],
+    height: S::f32s,
+    squares: &mut [f32],
+) {
+    let buckets = table.heights.buckets(simd, height);
+    for first in (0..S::f32s::LEN).step_by(4) {
+        let four = first..first + 4;
+        let mut pieces = [&table.pieces[0]; 4];
+        for (lane, piece) in pieces.iter_mut().enumerate() {
+            let index = table
+                .heights
+                .piece_of_lane(z[first + lane], buckets[first + lane]);
+            *piece = &table.pieces[index];
+        }
+        let position = [&x[four.clone()], &y[four.clone()], &z[four.clone()]];
+        squares_of_four(simd, pieces, position).store_slice(&mut squares[four]);
     }
-    S::f32s::from_slice(simd, &squares[..S::f32s::LEN])
 }
 
-#[cfg(test)]
-mod tests {
-    use super::super::GrowthSettings;
-    use super::*;
-    use crate::value::{Skeleton, Tangents};
-    use glam::DVec3;
+#[inline(always)]
+fn squares_of_four<S: Simd>(
+    simd: S,
+    [a, b, c, d]: [&PieceConstants; 4],
+    [x, y, z]: [&[f32]; 3],
+) -> f32x4<S> {
+    let start = f32x4::load_array(simd, [a.start, b.start, c.start, d.start]);
+    let h = f32x4::from_slice(simd, z) - start;
+    let [x0, x1, x2, x3] = transposed(simd, [&a.x, &b.x, &c.x, &d.x]);
+    let [y0, y1, y2, y3] = transposed(simd, [&a.y, &b.y, &c.y, &d.y]);
+    let dx = (f32x4::from_slice(simd, x) - x0) - h * (h * (h * x3 + x2) + x1);
+    let dy = (f32x4::from_slice(simd, y) - y0) - h * (h * (h * y3 + y2) + y1);
+    dx * dx + dy * dy
+}
 
-    fn table(heights: &[f64]) -> TrunkTable {
-        let trunk = heights.iter().map(|z| DVec3::new(0.0, 0.0, *z)).collect();
-        let skeleton = Skeleton {
-            trunk,
-            tangents: Tangents::Natural,
-            branches: vec![],
-        };
-        let settings = GrowthSettings {
-            elongation: 1.0,
-            thickening: 1.0,
-            sharpness: 2.0,
-            reach: None,
-        };
-        TrunkTable::new(&GrowthModel::new(&skeleton, settings).unwrap())
-    }
-
-    #[test]
-    fn every_height_is_found_in_its_piece_whatever_the_spacing() {
-        let even: Vec<f64> = (0..1000).map(f64::from).collect();
-        let crowded: Vec<f64> = (0..500)
-            .map(|i| 1e-4 * f64::from(i))
-            .chain([1e3, 4e3])
-            .collect();
-        let growing: Vec<f64> = (0..60).map(|i| libm::exp2(0.3 * f64::from(i))).collect();
-        for heights in [even, crowded, growing, vec![-5.0, 5.0]] {
-            let table = table(&heights);
-            for node in heights.iter().map(|z| *z as f32) {
-                for z in [
-                    node.next_down(),
-                    node,
-                    node.next_up(),
-                    node + 0.3,
-                    node - 0.3,
-                ] {
-                    let expected = heights.iter().filter(|node| **node as f32 <= z).count();
-                    assert_eq!(table.piece(z), expected, "z = {z}");
-                }
-            }
-            assert_eq!(table.piece(-1e30), 0);
-            assert_eq!(table.piece(1e30), heights.len());
-        }
-    }
-
-    #[test]
-    fn even_spacing_needs_one_step_in_a_bucket() {
-        assert_eq!(
-            table(&(0..10_000).map(|i| 0.4 * f64::from(i)).collect::<Vec<_>>()).rounds,
-            1
-        );
-    }
+/// Columns from rows.
+#[inline(always)]
+fn transposed<S: Simd>(simd: S, [a, b, c, d]: [&[f32; 4]; 4]) -> [f32x4<S>; 4] {
+    let (a, b) = (
+        f32x4::load_array_ref(simd, a),
+        f32x4::load_array_ref(simd, b),
+    );
+    let (c, d) = (
+        f32x4::load_array_ref(simd, c),
+        f32x4::load_array_ref(simd, d),
+    );
+    let (low_ac, high_ac) = (a.zip_low(c), a.zip_high(c));
+    let (low_bd, high_bd) = (b.zip_low(d), b.zip_high(d));
+    [
+        low_ac.zip_low(low_bd),
+        low_ac.zip_high(low_bd),
+        high_ac.zip_low(high_bd),
+        high_ac.zip_high(high_bd),
+    ]
 }
