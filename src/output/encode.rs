@@ -274,15 +274,11 @@ fn fill<const B: usize>(columns: &[&[f32]], bytes: &mut [u8], sample: impl Fn(f3
                 *pixel = [sample(*x), sample(*y), sample(*z)];
             }
         }
-        columns => {
-            let step = columns.len();
-            for (offset, column) in columns.iter().enumerate() {
-                let places = samples.iter_mut().skip(offset).step_by(step);
-                places
-                    .zip(*column)
-                    .for_each(|(place, value)| *place = sample(*value));
-            }
-        }
+        [x] => samples
+            .iter_mut()
+            .zip(*x)
+            .for_each(|(place, x)| *place = sample(*x)),
+        _ => unreachable!("maps have one or three samples"),
     }
 }
 

@@ -31,8 +31,9 @@ pub(super) struct ExrWriter {
     position: u64,
 }
 
-/// The compression of all maps.
-const COMPRESSION: Compression = Compression::ZIP16;
+/// Measured on wood with grain: half colours 160 MB/s to 47 % (ZIP 61 MB/s to 57 %), float colours 59 MB/s
+/// to 78 % (ZIP 43 MB/s to 94 %), float numbers 34 MB/s to 87 % (ZIP 45 MB/s to 96 %).
+const COMPRESSION: Compression = Compression::PIZ;
 
 impl ExrWriter {
     pub(super) fn new(
