@@ -178,6 +178,7 @@ fn main() {
     for (format, depth) in depths {
         let encoder = Encoder::new(MapKind::Colour, format, None);
         let mut bytes = vec![0; side * side * encoder.pixel_bytes()];
+        encode(&encoder, &columns, 0, &mut bytes);
         let all = seconds(|| encode(&encoder, &columns, 0, &mut bytes));
         let samples = (side * side * 3) as f64;
         println!(
@@ -190,10 +191,15 @@ fn main() {
             || their_png(&bytes, side, depth),
         );
     }
-    for format in [MapFormat::ExrHalf, MapFormat::ExrFloat] {
+    for (format, threads) in [MapFormat::ExrHalf, MapFormat::ExrFloat]
+        .into_iter()
+        .flat_map(|format| [(format, 1), (format, 2)])
+    {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.expect("threads can be started");
         compare(
-            &format!("{format:?} encoded and written"),
-            || ours(&columns, side, format),
+            &format!("{format:?} with {threads} of our threads"),
+            || pool.install(|| ours(&columns, side, format)),
             || their_exr(&columns, side, format),
         );
     }

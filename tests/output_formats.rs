@@ -1,4 +1,5 @@
 //! Maps read back by other readers hold exactly the expected samples, in every format and kind.
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 mod output_support;
 

@@ -1,15 +1,17 @@
 //! Maps are streams: their bytes depend on nothing but the rows, and a failure leaves nothing behind.
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 mod output_support;
 
+use output_support::worlds::{Counting, Failing, noise};
 use output_support::{encoded, key, request, with_size};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use yosegi::output::{MapKind, MapRequest, create};
 use yosegi::value::MapFormat;
-use yosegi::world::{Disk, Memory, PendingFile, World};
+use yosegi::world::{Disk, Memory, World};
 
 const FORMATS: [MapFormat; 4] = [
     MapFormat::Png8,
@@ -58,6 +60,23 @@ fn grouping_rows_differently_does_not_change_the_file() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_the_file() {
+    let request = with_size([50, 300], MapKind::Colour, MapFormat::ExrHalf);
+    let rows = encoded(&request);
+    let with_threads = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| written(&request, &rows, &[5, 300]))
+    };
+    let one = with_threads(1);
+    for threads in [2, 3, 7] {
+        assert!(one == with_threads(threads), "{threads} threads");
     }
 }
 
@@ -199,65 +218,6 @@ fn a_size_that_says_nothing_is_left_out() {
     }
 }
 
-/// A disk that fails from a certain operation on.
-struct Failing {
-    files: Memory,
-    left: Arc<AtomicUsize>,
-}
-
-struct FailingFile {
-    file: Box<dyn PendingFile>,
-    left: Arc<AtomicUsize>,
-}
-
-fn spend(left: &AtomicUsize) -> io::Result<()> {
-    let spent = left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
-        left.checked_sub(1)
-    });
-    spent
-        .map(|_| ())
-        .map_err(|_| io::Error::new(io::ErrorKind::StorageFull, "the disk is full"))
-}
-
-impl World for Failing {
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        self.files.read(path)
-    }
-
-    fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
-        spend(&self.left)?;
-        Ok(Box::new(FailingFile {
-            file: self.files.create(path)?,
-            left: self.left.clone(),
-        }))
-    }
-}
-
-impl Write for FailingFile {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        spend(&self.left)?;
-        self.file.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Seek for FailingFile {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        spend(&self.left)?;
-        self.file.seek(to)
-    }
-}
-
-impl PendingFile for FailingFile {
-    fn commit(self: Box<Self>) -> io::Result<()> {
-        spend(&self.left)?;
-        self.file.commit()
-    }
-}
-
 fn write_all(world: &dyn World, request: &MapRequest, rows: &[u8]) -> io::Result<()> {
     let mut writer = create(world, PATH.as_ref(), request)?;
     for row in rows.chunks(request.row_bytes()) {
@@ -298,60 +258,6 @@ fn a_disk_that_fails_at_any_moment_gives_an_error_and_no_file() {
         }
         // Every block of rows, the header, the table or the end, and the commit can fail.
         assert!(failures > 6, "{format:?}: {failures}");
-    }
-}
-
-/// Bytes that no compressor shortens (splitmix64; Steele, Lea & Flood 2014).
-fn noise(length: usize, seed: u64) -> Vec<u8> {
-    let word = |index: u64| {
-        let mixed = (seed << 40 | index).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
-    };
-    let words = 1..=length.div_ceil(8) as u64;
-    let mut bytes: Vec<u8> = words.flat_map(|index| word(index).to_le_bytes()).collect();
-    bytes.truncate(length);
-    bytes
-}
-
-/// A disk that forgets what it gets and counts it.
-#[derive(Clone, Default)]
-struct Counting(Arc<AtomicUsize>);
-
-impl World for Counting {
-    fn read(&self, _: &Path) -> io::Result<Vec<u8>> {
-        Err(io::ErrorKind::NotFound.into())
-    }
-
-    fn create(&self, _: &Path) -> io::Result<Box<dyn PendingFile>> {
-        Ok(Box::new(self.clone()))
-    }
-}
-
-impl Write for Counting {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.fetch_add(bytes.len(), Ordering::Relaxed);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Seek for Counting {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        match to {
-            SeekFrom::Start(position) => Ok(position),
-            SeekFrom::End(_) | SeekFrom::Current(_) => Err(io::ErrorKind::Unsupported.into()),
-        }
-    }
-}
-
-impl PendingFile for Counting {
-    fn commit(self: Box<Self>) -> io::Result<()> {
-        Ok(())
     }
 }
 

@@ -121,6 +121,9 @@ impl Scale {
     }
 }
 
+/// Pixels that are encoded together.
+const BLOCK: usize = 1024;
+
 /// The least magnitude that rounds to infinity as a half float.
 const HALF_OVERFLOW: f32 = 65520.0;
 
@@ -155,14 +158,26 @@ impl Encoder {
             "one column for each sample of a pixel"
         );
         let pixels = bytes.len() / self.pixel_bytes();
+        assert_eq!(bytes.len(), pixels * self.pixel_bytes(), "whole pixels");
         assert!(
             columns.iter().all(|column| column.len() == pixels),
             "columns fill the bytes"
         );
-        self.convert(columns, bytes);
         let mut faults = Faults::default();
-        for column in columns {
-            faults += count(column, self.limits);
+        // Short blocks stay in the nearest cache between the two passes.
+        for (index, bytes) in bytes.chunks_mut(BLOCK * self.pixel_bytes()).enumerate() {
+            let start = index * BLOCK;
+            let range = start..pixels.min(start + BLOCK);
+            let mut block: [&[f32]; 3] = [&[]; 3];
+            block
+                .iter_mut()
+                .zip(columns)
+                .for_each(|(to, column)| *to = &column[range.clone()]);
+            let block = &block[..self.samples];
+            self.convert(block, bytes);
+            block
+                .iter()
+                .for_each(|column| faults += count(column, self.limits));
         }
         faults
     }
@@ -244,23 +259,19 @@ impl Conversion {
     }
 }
 
-/// Counts what cannot be written as it is.
+/// Counts what cannot be written as it is, in one block.
 fn count(column: &[f32], [low, high]: [f32; 2]) -> Faults {
-    let mut faults = Faults::default();
-    // 32-bit counters fill vectors; a block is short enough for them.
-    for block in column.chunks(1 << 16) {
-        let [mut non_finite, mut clamped] = [0u32; 2];
-        for value in block {
-            let finite = value.abs() <= f32::MAX;
-            non_finite += u32::from(!finite);
-            clamped += u32::from(finite & ((*value < low) | (*value > high)));
-        }
-        faults += Faults {
-            non_finite: non_finite.into(),
-            clamped: clamped.into(),
-        };
+    // 32-bit counters fill vectors.
+    let [mut non_finite, mut clamped] = [0u32; 2];
+    for value in column {
+        let finite = value.abs() <= f32::MAX;
+        non_finite += u32::from(!finite);
+        clamped += u32::from(finite & ((*value < low) | (*value > high)));
     }
-    faults
+    Faults {
+        non_finite: non_finite.into(),
+        clamped: clamped.into(),
+    }
 }
 
 /// Writes each value of the columns as `B` bytes, the samples of a pixel side by side.
@@ -283,13 +294,13 @@ fn fill<const B: usize>(columns: &[&[f32]], bytes: &mut [u8], sample: impl Fn(f3
 }
 
 fn fill_halves(columns: &[&[f32]], bytes: &mut [u8]) {
-    const BLOCK: usize = 256;
+    const PART: usize = 256;
     let samples = bytes.as_chunks_mut::<2>().0;
     for (offset, column) in columns.iter().enumerate() {
         let mut places = samples.iter_mut().skip(offset).step_by(columns.len());
-        for block in column.chunks(BLOCK) {
-            let mut values = [0.0; BLOCK];
-            let mut halves = [f16::ZERO; BLOCK];
+        for block in column.chunks(PART) {
+            let mut values = [0.0; PART];
+            let mut halves = [f16::ZERO; PART];
             values
                 .iter_mut()
                 .zip(block)

@@ -15,13 +15,11 @@ use std::io::{self, SeekFrom};
 
 /// Writes an OpenEXR file with one layer: it holds one block of rows, and the offsets of the blocks.
 ///
-/// Channels are `R`, `G` and `B`, for normals too, or `Y`: every viewer shows those. A file has at most one
-/// attribute of our own in each of the two groups, because the order inside a group is arbitrary.
+/// Blocks that arrive together are compressed by as many threads as the pool of the caller has, but not by
+/// the pool: its threads may take up tiles that wait for this very writer.
 pub(super) struct ExrWriter {
     file: Box<dyn PendingFile>,
-    header: [Header; 1],
-    samples: usize,
-    sample_bytes: usize,
+    layout: Layout,
     /// Rows that do not fill a block yet.
     pending: Vec<u8>,
     /// Where each block starts that has been written.
@@ -40,46 +38,143 @@ impl ExrWriter {
         mut file: Box<dyn PendingFile>,
         request: &MapRequest,
     ) -> io::Result<ExrWriter> {
-        let header = [describe(request)];
-        let start = header_bytes(&header).map_err(from_exr)?;
-        let table = vec![0; header[0].chunk_count * size_of::<u64>()];
+        let layout = Layout::new(request);
+        let start = layout.header_bytes().map_err(from_exr)?;
+        let blocks = layout.header[0].chunk_count;
+        let table = vec![0; blocks * size_of::<u64>()];
         file.write_all(&start)?;
         file.write_all(&table)?;
         Ok(ExrWriter {
             file,
-            samples: request.kind.samples(),
-            sample_bytes: sample_type(request.format).bytes_per_sample(),
+            layout,
             pending: Vec::new(),
-            offsets: Vec::with_capacity(header[0].chunk_count),
+            offsets: Vec::with_capacity(blocks),
             table_start: start.len() as u64,
             position: (start.len() + table.len()) as u64,
-            header,
         })
     }
 
+    /// Writes rows that end where a block ends.
+    fn write_blocks(&mut self, rows: &[u8]) -> io::Result<()> {
+        let threads = rayon::current_num_threads();
+        for wave in rows.chunks(threads * self.layout.block_bytes()) {
+            for chunk in self.layout.compress_all(self.offsets.len(), wave)? {
+                self.file.write_all(&chunk)?;
+                self.offsets.push(self.position);
+                self.position += chunk.len() as u64;
+            }
+        }
+        Ok(())
+    }
+
+    fn write_pending(&mut self) -> io::Result<()> {
+        let mut rows = std::mem::take(&mut self.pending);
+        self.write_blocks(&rows)?;
+        rows.clear();
+        self.pending = rows;
+        Ok(())
+    }
+}
+
+impl MapWriter for ExrWriter {
+    fn write_rows(&mut self, mut rows: &[u8]) -> io::Result<()> {
+        let block_bytes = self.layout.block_bytes();
+        if !self.pending.is_empty() {
+            let missing = rows.len().min(block_bytes - self.pending.len());
+            self.pending.extend_from_slice(&rows[..missing]);
+            rows = &rows[missing..];
+            if self.pending.len() < block_bytes {
+                return Ok(());
+            }
+            self.write_pending()?;
+        }
+        let (whole, rest) = rows.split_at(rows.len() - rows.len() % block_bytes);
+        self.write_blocks(whole)?;
+        self.pending.extend_from_slice(rest);
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
+        self.write_pending()?;
+        let table: Vec<u8> = self
+            .offsets
+            .iter()
+            .flat_map(|offset| offset.to_le_bytes())
+            .collect();
+        self.file.seek(SeekFrom::Start(self.table_start))?;
+        self.file.write_all(&table)?;
+        self.file.commit()
+    }
+}
+
+/// What is known before the pixels: enough to compress any block.
+struct Layout {
+    header: [Header; 1],
+    samples: usize,
+    sample_bytes: usize,
+}
+
+impl Layout {
+    fn new(request: &MapRequest) -> Layout {
+        Layout {
+            header: [describe(request)],
+            samples: request.kind.samples(),
+            sample_bytes: sample_type(request.format).bytes_per_sample(),
+        }
+    }
+
+    /// What comes before the table of offsets.
+    fn header_bytes(&self) -> exr::error::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        let requirements = MetaData::validate(&self.header, true)?;
+        magic_number::write(&mut bytes)?;
+        requirements.write(&mut bytes)?;
+        Header::write_all(&self.header, &mut bytes, false)?;
+        Ok(bytes)
+    }
+
+    /// The bytes of a block of rows before it is compressed; the last one may be shorter.
     fn block_bytes(&self) -> usize {
         self.header[0].max_block_byte_size()
     }
 
-    fn write_block(&mut self, rows: &[u8]) -> io::Result<()> {
-        let header = &self.header[0];
-        let Vec2(width, lines) = header.max_block_pixel_size();
+    /// The finished chunks of the blocks from `first` on, each made by a thread of its own.
+    fn compress_all(&self, first: usize, rows: &[u8]) -> io::Result<Vec<Vec<u8>>> {
+        if rows.len() <= self.block_bytes() {
+            return Ok(vec![self.compress(first, rows)?]);
+        }
+        std::thread::scope(|scope| {
+            let blocks = rows.chunks(self.block_bytes()).enumerate();
+            let start = |(index, rows)| {
+                let work = move || self.compress(first + index, rows);
+                std::thread::Builder::new().spawn_scoped(scope, work)
+            };
+            let threads = blocks.map(start).collect::<io::Result<Vec<_>>>()?;
+            let join = |thread: std::thread::ScopedJoinHandle<'_, io::Result<Vec<u8>>>| {
+                thread
+                    .join()
+                    .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+            };
+            threads.into_iter().map(join).collect()
+        })
+    }
+
+    fn compress(&self, index: usize, rows: &[u8]) -> io::Result<Vec<u8>> {
+        let Vec2(width, lines) = self.header[0].max_block_pixel_size();
         let row_bytes = width * self.samples * self.sample_bytes;
         let block = UncompressedBlock {
             index: BlockIndex {
                 layer: 0,
-                pixel_position: Vec2(0, self.offsets.len() * lines),
+                pixel_position: Vec2(0, index * lines),
                 pixel_size: Vec2(width, rows.len() / row_bytes),
                 level: Vec2(0, 0),
             },
             data: self.planes(rows, row_bytes),
         };
-        let mut bytes = Vec::with_capacity(rows.len() + 8);
         let chunk = block.compress_to_chunk(&self.header).map_err(from_exr)?;
+        let mut bytes = Vec::new();
         chunk.write(&mut bytes, 1).map_err(from_exr)?;
-        self.offsets.push(self.position);
-        self.position += bytes.len() as u64;
-        self.file.write_all(&bytes)
+        Ok(bytes)
     }
 
     /// The rows with their channels one after another in each row, sorted by name: B, G, R.
@@ -104,6 +199,10 @@ fn sample_type(format: MapFormat) -> SampleType {
     }
 }
 
+/// Channels are `R`, `G` and `B`, for normals too, or `Y`: every viewer shows those.
+///
+/// The header has at most one attribute of our own in each of its two groups, because the order inside a
+/// group is arbitrary.
 fn describe(request: &MapRequest) -> Header {
     let [width, height] = request.pixels.map(|pixels| pixels as usize);
     let channel = |name| ChannelDescription::named(name, sample_type(request.format));
@@ -141,52 +240,6 @@ const REC_709: Chromaticities = Chromaticities {
     blue: Vec2(0.15, 0.06),
     white: Vec2(0.3127, 0.329),
 };
-
-/// What comes before the table of offsets.
-fn header_bytes(header: &[Header; 1]) -> exr::error::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let requirements = MetaData::validate(header, true)?;
-    magic_number::write(&mut bytes)?;
-    requirements.write(&mut bytes)?;
-    Header::write_all(header, &mut bytes, false)?;
-    Ok(bytes)
-}
-
-impl MapWriter for ExrWriter {
-    fn write_rows(&mut self, mut rows: &[u8]) -> io::Result<()> {
-        let block_bytes = self.block_bytes();
-        while self.pending.len() + rows.len() >= block_bytes {
-            let (first, rest) = rows.split_at(block_bytes - self.pending.len());
-            rows = rest;
-            if self.pending.is_empty() {
-                self.write_block(first)?;
-            } else {
-                self.pending.extend_from_slice(first);
-                let mut block = std::mem::take(&mut self.pending);
-                self.write_block(&block)?;
-                block.clear();
-                self.pending = block;
-            }
-        }
-        self.pending.extend_from_slice(rows);
-        Ok(())
-    }
-
-    fn finish(mut self: Box<Self>) -> io::Result<()> {
-        let last = std::mem::take(&mut self.pending);
-        if !last.is_empty() {
-            self.write_block(&last)?;
-        }
-        let table: Vec<u8> = self
-            .offsets
-            .iter()
-            .flat_map(|offset| offset.to_le_bytes())
-            .collect();
-        self.file.seek(SeekFrom::Start(self.table_start))?;
-        self.file.write_all(&table)?;
-        self.file.commit()
-    }
-}
 
 fn from_exr(error: exr::error::Error) -> io::Error {
     match error {

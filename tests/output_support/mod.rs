@@ -1,6 +1,8 @@
 //! Maps for the tests of the writers: gradients with known values.
 #![allow(dead_code, reason = "each test program uses a part")]
 
+pub(crate) mod worlds;
+
 use std::path::PathBuf;
 use yosegi::key::Key;
 use yosegi::output::{Encoder, MapKind, MapRequest, create};
