@@ -89,19 +89,33 @@ impl Diagnostic {
 
     /// A warning about no place in particular.
     pub fn warning(code: Code, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, message) }
+        Diagnostic {
+            severity: Severity::Warning,
+            ..Diagnostic::error(code, message)
+        }
     }
 
     /// Points at a place.
-    pub fn at(mut self, source: &Arc<SourceFile>, span: Span, text: impl Into<String>) -> Diagnostic {
+    pub fn at(
+        mut self,
+        source: &Arc<SourceFile>,
+        span: Span,
+        text: impl Into<String>,
+    ) -> Diagnostic {
         self.source = Some(Arc::clone(source));
-        self.label = Some(Label { span, text: text.into() });
+        self.label = Some(Label {
+            span,
+            text: text.into(),
+        });
         self
     }
 
     /// Points at another place of the same file that explains it.
     pub fn and_at(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
-        self.context.push(Label { span, text: text.into() });
+        self.context.push(Label {
+            span,
+            text: text.into(),
+        });
         self
     }
 

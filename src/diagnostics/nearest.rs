@@ -2,8 +2,10 @@
 
 /// Up to three of `names`, the nearest to `wrong` first; all that are nearer than half its length.
 pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
-    let mut ranked: Vec<_> =
-        names.into_iter().map(|name| (distance(wrong, name), name)).collect();
+    let mut ranked: Vec<_> = names
+        .into_iter()
+        .map(|name| (distance(wrong, name), name))
+        .collect();
     ranked.sort();
     let limit = (wrong.chars().count() / 2).max(1);
     ranked

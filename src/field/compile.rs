@@ -172,9 +172,8 @@ impl Compiler {
                 None => vec![(position.clone(), place)],
             },
         };
-        let unknown = |wanted: &(Field, usize)| {
-            !self.columns_of.contains_key(&(wanted.0.key(), wanted.1))
-        };
+        let unknown =
+            |wanted: &(Field, usize)| !self.columns_of.contains_key(&(wanted.0.key(), wanted.1));
         wanted.into_iter().filter(unknown).collect()
     }
 
@@ -185,8 +184,10 @@ impl Compiler {
         }
         let columns = self.columns_of.get(&(position.key(), place))?;
         let position_columns = [columns[0], columns[1], columns[2]];
-        let key =
-            KeyHasher::new("place", 1).key(self.places[place].key).key(position.key()).finish();
+        let key = KeyHasher::new("place", 1)
+            .key(self.places[place].key)
+            .key(position.key())
+            .finish();
         self.places.push(Place {
             key,
             position: position_columns,
@@ -211,7 +212,11 @@ impl Compiler {
                 let inner = self.place_of[&(place, position.key())];
                 self.columns_of[&(field.key(), inner)].clone()
             }
-            Operation::Kernel { kernel, inputs, node } => {
+            Operation::Kernel {
+                kernel,
+                inputs,
+                node,
+            } => {
                 let columns = inputs
                     .iter()
                     .flat_map(|input| self.columns_of[&(input.key(), place)].clone())
@@ -237,7 +242,10 @@ impl Compiler {
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
         let within = (self.supersampling && kernel.sampling() != Sampling::Filtered)
             .then(|| Compiler::new(false).compile(&[self.from_root(field, place)]));
-        let key = KeyHasher::new("step", 1).key(field.key()).key(self.places[place].key).finish();
+        let key = KeyHasher::new("step", 1)
+            .key(field.key())
+            .key(self.places[place].key)
+            .finish();
         let step = KernelStep {
             kernel,
             node,
@@ -298,12 +306,19 @@ fn assign_margins(steps: &mut [Step], columns: usize) -> usize {
                 margins[*of] = margins[*of].max(distance);
             }
             Step::Kernel(step) => {
-                step.margin = step.outputs.iter().map(|column| margins[*column]).max().unwrap_or(0);
+                step.margin = step
+                    .outputs
+                    .iter()
+                    .map(|column| margins[*column])
+                    .max()
+                    .unwrap_or(0);
                 // Whether an input bends is seen by looking at its neighbours.
                 let distance = step.margin + usize::from(step.within.is_some());
                 let spreads = step.spreads.iter().flatten().flatten();
                 spreads.for_each(|column| margins[*column] = margins[*column].max(step.margin));
-                step.inputs.iter().for_each(|column| margins[*column] = margins[*column].max(distance));
+                step.inputs
+                    .iter()
+                    .for_each(|column| margins[*column] = margins[*column].max(distance));
             }
         }
     }

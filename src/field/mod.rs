@@ -44,7 +44,11 @@ enum Operation {
     /// Some columns of a wider field.
     Part { of: Field, first: usize },
     /// A kernel over the columns of other fields.
-    Kernel { kernel: Arc<dyn Kernel>, inputs: Vec<Field>, node: Arc<str> },
+    Kernel {
+        kernel: Arc<dyn Kernel>,
+        inputs: Vec<Field>,
+        node: Arc<str>,
+    },
     /// A field of another domain, evaluated where `position` points.
     At { field: Field, position: Field },
 }
@@ -62,12 +66,19 @@ impl Field {
         values.iter().for_each(|value| {
             key.number(f64::from(*value));
         });
-        Field::new(key.finish(), values.len(), Domain::Everywhere, Operation::Constant(values))
+        Field::new(
+            key.finish(),
+            values.len(),
+            Domain::Everywhere,
+            Operation::Constant(values),
+        )
     }
 
     /// The position of the sample in mm: (x, y, z) in a solid, (u, v, 0) on a plane.
     pub fn position(domain: Domain) -> Field {
-        let key = KeyHasher::new("position", 1).text(&domain.to_string()).finish();
+        let key = KeyHasher::new("position", 1)
+            .text(&domain.to_string())
+            .finish();
         Field::new(key, 3, domain, Operation::Position)
     }
 
@@ -88,7 +99,16 @@ impl Field {
             .unwrap_or(Domain::Everywhere);
         let width = kernel.width();
         let node = Arc::clone(node);
-        Field::new(key.finish(), width, domain, Operation::Kernel { kernel, inputs, node })
+        Field::new(
+            key.finish(),
+            width,
+            domain,
+            Operation::Kernel {
+                kernel,
+                inputs,
+                node,
+            },
+        )
     }
 
     /// Columns `first .. first + width` of this field.
@@ -101,7 +121,15 @@ impl Field {
             .whole(first as i64)
             .whole(width as i64)
             .finish();
-        Field::new(key, width, self.domain(), Operation::Part { of: self.clone(), first })
+        Field::new(
+            key,
+            width,
+            self.domain(),
+            Operation::Part {
+                of: self.clone(),
+                first,
+            },
+        )
     }
 
     /// This field where `position` points: the way from a plane into the solid it cuts.
@@ -109,8 +137,14 @@ impl Field {
         if self.domain() == Domain::Everywhere {
             return self.clone();
         }
-        let key = KeyHasher::new("at", 1).key(self.key()).key(position.key()).finish();
-        let operation = Operation::At { field: self.clone(), position: position.clone() };
+        let key = KeyHasher::new("at", 1)
+            .key(self.key())
+            .key(position.key())
+            .finish();
+        let operation = Operation::At {
+            field: self.clone(),
+            position: position.clone(),
+        };
         Field::new(key, self.width(), position.domain(), operation)
     }
 
@@ -138,7 +172,12 @@ impl Field {
     }
 
     fn new(key: Key, width: usize, domain: Domain, operation: Operation) -> Field {
-        Field(Arc::new(Expression { key, width, domain, operation }))
+        Field(Arc::new(Expression {
+            key,
+            width,
+            domain,
+            operation,
+        }))
     }
 }
 

@@ -76,7 +76,8 @@ impl Scratch {
     /// Prepares the buffers for a program over `padded` samples.
     fn prepare(&mut self, program: &Program, samples: &Samples<'_>, padded: usize) {
         if self.filled != Some((program.key, padded)) {
-            self.slots.resize_with(self.slots.len().max(program.slots), Vec::new);
+            self.slots
+                .resize_with(self.slots.len().max(program.slots), Vec::new);
             for (slot, value) in &program.constants {
                 self.slots[*slot].clear();
                 self.slots[*slot].resize(padded, *value);
@@ -129,7 +130,10 @@ impl Program {
         let samples_key = samples.key();
         let look_up = |step: &Step| match step {
             Step::Kernel(step) if step.kernel.nanoseconds() >= DEAR => {
-                let key = KeyHasher::new("columns", 1).key(step.key).key(samples_key).finish();
+                let key = KeyHasher::new("columns", 1)
+                    .key(step.key)
+                    .key(samples_key)
+                    .finish();
                 cache.get(&key).map_or(Stored::Under(key), Stored::Columns)
             }
             _ => Stored::Nowhere,
@@ -140,7 +144,10 @@ impl Program {
     /// Which steps have to run, given what is stored.
     fn needed(&self, stored: &[Stored]) -> Vec<bool> {
         let mut wanted = vec![false; self.slots];
-        self.outputs.iter().flatten().for_each(|slot| wanted[*slot] = true);
+        self.outputs
+            .iter()
+            .flatten()
+            .for_each(|slot| wanted[*slot] = true);
         let mut needed = vec![false; self.steps.len()];
         for (index, step) in self.steps.iter().enumerate().rev() {
             let writes = step.writes();
@@ -174,7 +181,11 @@ fn write_spread(
     along: [usize; 2],
 ) {
     let mut columns = along.map(|slot| std::mem::take(&mut scratch.slots[slot]));
-    let shape = if context.filtering { samples.shape() } else { [1, 1] };
+    let shape = if context.filtering {
+        samples.shape()
+    } else {
+        [1, 1]
+    };
     spread::write_spread(&scratch.slots[of], shape, &mut columns);
     for (slot, column) in along.into_iter().zip(columns) {
         scratch.slots[slot] = column;
@@ -188,21 +199,38 @@ fn compute(
     context: &RunContext<'_>,
     padded: usize,
 ) {
-    let mut outputs: Vec<Vec<f32>> =
-        step.outputs.iter().map(|slot| std::mem::take(&mut scratch.slots[*slot])).collect();
-    outputs.iter_mut().for_each(|column| column.resize(padded, 0.0));
+    let mut outputs: Vec<Vec<f32>> = step
+        .outputs
+        .iter()
+        .map(|slot| std::mem::take(&mut scratch.slots[*slot]))
+        .collect();
+    outputs
+        .iter_mut()
+        .for_each(|column| column.resize(padded, 0.0));
     let inputs: Vec<InputColumn<'_>> = step
         .inputs
         .iter()
         .zip(&step.spreads)
         .map(|(slot, spread)| InputColumn {
             values: &scratch.slots[*slot],
-            spread: spread.map_or([&[], &[]], |along| along.map(|slot| &scratch.slots[slot][..])),
+            spread: spread.map_or([&[], &[]], |along| {
+                along.map(|slot| &scratch.slots[slot][..])
+            }),
         })
         .collect();
-    let mut block = Block { level: context.level, inputs: &inputs, outputs: &mut outputs };
+    let mut block = Block {
+        level: context.level,
+        inputs: &inputs,
+        outputs: &mut outputs,
+    };
     step.kernel.evaluate(&mut block);
-    scratch.note(&step.node, Work { computed: true, reused: false });
+    scratch.note(
+        &step.node,
+        Work {
+            computed: true,
+            reused: false,
+        },
+    );
     if let (Some(within), true) = (&step.within, context.filtering) {
         supersample::supersample(scratch, step, within, samples, context, &mut outputs);
     }
@@ -216,18 +244,26 @@ fn load(scratch: &mut Scratch, step: &KernelStep, columns: &Columns) {
         scratch.slots[*slot].clear();
         scratch.slots[*slot].extend_from_slice(column);
     }
-    scratch.note(&step.node, Work { computed: false, reused: true });
+    scratch.note(
+        &step.node,
+        Work {
+            computed: false,
+            reused: true,
+        },
+    );
 }
 
-fn store(
-    scratch: &Scratch,
-    step: &KernelStep,
-    key: Key,
-    context: &RunContext<'_>,
-    padded: usize,
-) {
-    let columns: Columns = step.outputs.iter().map(|slot| scratch.slots[*slot].clone()).collect();
+fn store(scratch: &Scratch, step: &KernelStep, key: Key, context: &RunContext<'_>, padded: usize) {
+    let columns: Columns = step
+        .outputs
+        .iter()
+        .map(|slot| scratch.slots[*slot].clone())
+        .collect();
     if let Some(cache) = context.cache {
-        cache.put(key, columns, f64::from(step.kernel.nanoseconds()) * padded as f64);
+        cache.put(
+            key,
+            columns,
+            f64::from(step.kernel.nanoseconds()) * padded as f64,
+        );
     }
 }

@@ -56,7 +56,13 @@ impl PixelGrid {
         };
         let side = count + 2 * margin;
         let origins = indices.iter().map(origin).collect();
-        PixelGrid { width: side, height: side, step, margin, origins }
+        PixelGrid {
+            width: side,
+            height: side,
+            step,
+            margin,
+            origins,
+        }
     }
 
     /// Number of samples in all grids.
@@ -138,7 +144,9 @@ impl Samples<'_> {
     /// Writes the positions as three columns, padded with copies of the last sample.
     pub(super) fn write_positions(&self, columns: &mut [Vec<f32>; 3], padded: usize) {
         let length = self.len();
-        columns.iter_mut().for_each(|column| column.resize(padded, 0.0));
+        columns
+            .iter_mut()
+            .for_each(|column| column.resize(padded, 0.0));
         match self {
             Samples::Grid { target, grid } => write_grid(*target, grid, columns),
             Samples::Points(points) => {
@@ -157,15 +165,17 @@ impl Samples<'_> {
 }
 
 fn write_grid(target: &dyn Target, grid: &PixelGrid, [u, v, w]: &mut [Vec<f32>; 3]) {
-    let rows = grid.origins.iter().flat_map(|[x, y]| {
-        (0..grid.height).map(move |row| (*x, y + row as f64 * grid.step))
-    });
+    let rows = grid
+        .origins
+        .iter()
+        .flat_map(|[x, y]| (0..grid.height).map(move |row| (*x, y + row as f64 * grid.step)));
     for (index, (x, y)) in rows.enumerate() {
         let row = index * grid.width..(index + 1) * grid.width;
-        target.write_row(x, y, grid.step, [
-            &mut u[row.clone()],
-            &mut v[row.clone()],
-            &mut w[row],
-        ]);
+        target.write_row(
+            x,
+            y,
+            grid.step,
+            [&mut u[row.clone()], &mut v[row.clone()], &mut w[row]],
+        );
     }
 }

@@ -6,17 +6,35 @@ use super::compile::{POSITION, Program, Step};
 pub(super) fn assign(mut program: Program) -> Program {
     let last_read = last_reads(&program);
     let mut slots = Slots::new(program.slots, &program.constants);
-    program.constants.iter_mut().for_each(|(column, _)| *column = slots.of[*column]);
+    program
+        .constants
+        .iter_mut()
+        .for_each(|(column, _)| *column = slots.of[*column]);
     for (index, step) in program.steps.iter_mut().enumerate() {
-        let dying: Vec<usize> =
-            step.reads().into_iter().filter(|column| last_read[*column] == index).collect();
-        let unread: Vec<usize> =
-            step.writes().into_iter().filter(|column| last_read[*column] == 0).collect();
-        step.writes().into_iter().for_each(|column| slots.take(column));
+        let dying: Vec<usize> = step
+            .reads()
+            .into_iter()
+            .filter(|column| last_read[*column] == index)
+            .collect();
+        let unread: Vec<usize> = step
+            .writes()
+            .into_iter()
+            .filter(|column| last_read[*column] == 0)
+            .collect();
+        step.writes()
+            .into_iter()
+            .for_each(|column| slots.take(column));
         step.rename(&slots.of);
-        dying.into_iter().chain(unread).for_each(|column| slots.release(column));
+        dying
+            .into_iter()
+            .chain(unread)
+            .for_each(|column| slots.release(column));
     }
-    program.outputs.iter_mut().flatten().for_each(|column| *column = slots.of[*column]);
+    program
+        .outputs
+        .iter_mut()
+        .flatten()
+        .for_each(|column| *column = slots.of[*column]);
     program.slots = slots.count;
     program
 }
@@ -25,10 +43,18 @@ pub(super) fn assign(mut program: Program) -> Program {
 fn last_reads(program: &Program) -> Vec<usize> {
     let mut last = vec![0; program.slots];
     for (index, step) in program.steps.iter().enumerate() {
-        step.reads().into_iter().for_each(|column| last[column] = index);
+        step.reads()
+            .into_iter()
+            .for_each(|column| last[column] = index);
     }
     let pinned = program.constants.iter().map(|(column, _)| column);
-    for column in program.outputs.iter().flatten().chain(pinned).chain(&POSITION) {
+    for column in program
+        .outputs
+        .iter()
+        .flatten()
+        .chain(pinned)
+        .chain(&POSITION)
+    {
         last[*column] = usize::MAX;
     }
     last
@@ -49,7 +75,10 @@ impl Slots {
             released: vec![false; columns],
             count: 0,
         };
-        POSITION.iter().chain(constants.iter().map(|(column, _)| column)).for_each(|c| slots.take(*c));
+        POSITION
+            .iter()
+            .chain(constants.iter().map(|(column, _)| column))
+            .for_each(|c| slots.take(*c));
         slots
     }
 

@@ -34,7 +34,11 @@ fn differences_in_row(row: &[f32], out: &mut [f32]) {
 
 fn differences_between_rows(grid: &[f32], width: usize, out: &mut [f32]) {
     let inner = grid.len() - width;
-    for ((out, before), after) in out[width..inner].iter_mut().zip(grid).zip(&grid[2 * width..]) {
+    for ((out, before), after) in out[width..inner]
+        .iter_mut()
+        .zip(grid)
+        .zip(&grid[2 * width..])
+    {
         *out = 0.5 * (after - before);
     }
     for x in 0..width {
@@ -67,7 +71,9 @@ mod tests {
 
     #[test]
     fn spread_of_a_plane_is_its_gradient_and_it_does_not_bend() {
-        let values: Vec<f32> = (0..35).map(|i| 2.0 * (i % 7) as f32 - 3.0 * (i / 7) as f32).collect();
+        let values: Vec<f32> = (0..35)
+            .map(|i| 2.0 * (i % 7) as f32 - 3.0 * (i / 7) as f32)
+            .collect();
         let mut along = [vec![], vec![]];
         write_spread(&values, [7, 5], &mut along);
         assert!(along[0].iter().all(|d| *d == 2.0));

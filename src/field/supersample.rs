@@ -20,7 +20,9 @@ pub(super) fn supersample(
     context: &RunContext<'_>,
     outputs: &mut [Vec<f32>],
 ) {
-    let Samples::Grid { target, grid } = samples else { return };
+    let Samples::Grid { target, grid } = samples else {
+        return;
+    };
     let pixels = pixels_to_supersample(scratch, step, grid);
     if pixels.is_empty() {
         return;
@@ -29,7 +31,14 @@ pub(super) fn supersample(
     for pixels in pixels.chunks(PIXELS_AT_ONCE) {
         let grid = grid.within_pixels(pixels, SIDE, within.margin());
         let area = grid.width * grid.height;
-        within.run(&Samples::Grid { target: *target, grid }, &mut inner, context);
+        within.run(
+            &Samples::Grid {
+                target: *target,
+                grid,
+            },
+            &mut inner,
+            context,
+        );
         for (column, output) in outputs.iter_mut().enumerate() {
             let values = within.output(&inner, 0, column);
             for (values, pixel) in values.chunks_exact(area).zip(pixels) {
@@ -52,12 +61,18 @@ fn pixels_to_supersample(scratch: &Scratch, step: &KernelStep, grid: &PixelGrid)
     match step.kernel.sampling() {
         Sampling::Filtered => vec![],
         Sampling::Supersampled => {
-            let varies = |index: &usize| step.inputs.iter().any(|slot| {
-                spread::size(scratch.column(*slot), grid.width, *index) > 0.0
-            });
+            let varies = |index: &usize| {
+                step.inputs
+                    .iter()
+                    .any(|slot| spread::size(scratch.column(*slot), grid.width, *index) > 0.0)
+            };
             inside.filter(varies).map(|index| index as u32).collect()
         }
-        Sampling::FilteredWhereStraight { column, absolute, relative } => {
+        Sampling::FilteredWhereStraight {
+            column,
+            absolute,
+            relative,
+        } => {
             let values = scratch.column(step.inputs[column]);
             let bends = |index: &usize| {
                 spread::bend(values, grid.width, *index)

@@ -30,12 +30,20 @@ pub struct Failure {
 impl Failure {
     /// A failure that no single input causes.
     pub fn new(message: impl Into<String>) -> Failure {
-        Failure { message: message.into(), input: None, hint: None }
+        Failure {
+            message: message.into(),
+            input: None,
+            hint: None,
+        }
     }
 
     /// A failure caused by input `input`.
     pub fn of_input(input: &'static str, message: impl Into<String>) -> Failure {
-        Failure { message: message.into(), input: Some(input), hint: None }
+        Failure {
+            message: message.into(),
+            input: Some(input),
+            hint: None,
+        }
     }
 
     /// Adds what to do.
@@ -135,13 +143,19 @@ impl<'a> Inputs<'a> {
 
     fn required(&self, name: &str) -> &'a Value {
         self.get(name).unwrap_or_else(|| {
-            panic!("input `{name}` of kind `{}` has no value: declare a default", self.kind.name)
+            panic!(
+                "input `{name}` of kind `{}` has no value: declare a default",
+                self.kind.name
+            )
         })
     }
 
     fn mistake(&self, name: &str, found: &Value) -> ! {
         let found = found.type_name();
-        panic!("input `{name}` of kind `{}` holds a {found}: use another reader", self.kind.name)
+        panic!(
+            "input `{name}` of kind `{}` holds a {found}: use another reader",
+            self.kind.name
+        )
     }
 }
 

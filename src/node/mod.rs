@@ -5,8 +5,8 @@
 
 mod inputs;
 
-pub use inputs::{Build, Failure, Inputs, common_domain};
 pub(crate) use inputs::field_of;
+pub use inputs::{Build, Failure, Inputs, common_domain};
 
 use crate::value::{Domain, Type, Unit, Value};
 
@@ -34,17 +34,25 @@ pub struct Kind {
 impl Kind {
     /// The input called `name`, with its position.
     pub fn input(&self, name: &str) -> Option<(usize, &'static Input)> {
-        self.inputs.iter().enumerate().find(|(_, input)| input.name == name)
+        self.inputs
+            .iter()
+            .enumerate()
+            .find(|(_, input)| input.name == name)
     }
 
     /// The output called `name`, with its position.
     pub fn output(&self, name: &str) -> Option<(usize, &'static Output)> {
-        self.outputs.iter().enumerate().find(|(_, output)| output.name == name)
+        self.outputs
+            .iter()
+            .enumerate()
+            .find(|(_, output)| output.name == name)
     }
 
     /// Whether its outputs are structures: built once, cached and stored.
     pub fn is_structure(&self) -> bool {
-        self.outputs.iter().any(|output| output.value_type.is_structure())
+        self.outputs
+            .iter()
+            .any(|output| output.value_type.is_structure())
     }
 }
 
@@ -166,7 +174,13 @@ impl Output {
 
     /// A field or material, defined where the node's inputs are.
     pub const fn field(name: &'static str, value_type: Type, about: &'static str) -> Output {
-        Output { name, value_type, varies: Varies::PerPoint, domain: None, about }
+        Output {
+            name,
+            value_type,
+            varies: Varies::PerPoint,
+            domain: None,
+            about,
+        }
     }
 
     /// States the domain, for outputs that do not take it from the inputs.

@@ -37,8 +37,12 @@ impl MapFormat {
 
     /// The format called `name`.
     pub fn from_name(name: &str) -> Option<MapFormat> {
-        let formats =
-            [MapFormat::Png8, MapFormat::Png16, MapFormat::ExrHalf, MapFormat::ExrFloat];
+        let formats = [
+            MapFormat::Png8,
+            MapFormat::Png16,
+            MapFormat::ExrHalf,
+            MapFormat::ExrFloat,
+        ];
         let index = MapFormat::NAMES.iter().position(|known| *known == name)?;
         formats.get(index).copied()
     }

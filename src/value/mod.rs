@@ -6,7 +6,7 @@ mod skeleton;
 mod types;
 
 pub use colour_pattern::{AfterEnd, ColourPattern};
-pub use material::{Maps, MapFormat, Material};
+pub use material::{MapFormat, Maps, Material};
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
 pub use types::{Domain, Type, Unit};
 
@@ -76,14 +76,16 @@ impl Value {
             Value::Choice(name) => key.text("choice").text(name),
             Value::Text(text) => key.text("text").text(text),
             Value::File(file) => key.text("file").bytes(&file.bytes),
-            Value::Colour(colour) => {
-                colour.iter().fold(key.text("colour"), |key, part| key.number(*part))
-            }
+            Value::Colour(colour) => colour
+                .iter()
+                .fold(key.text("colour"), |key, part| key.number(*part)),
             Value::Vector(vector) => vector
                 .to_array()
                 .iter()
                 .fold(key.text("vector"), |key, part| key.number(*part)),
-            Value::Pair(pair) => pair.iter().fold(key.text("pair"), |key, part| key.number(*part)),
+            Value::Pair(pair) => pair
+                .iter()
+                .fold(key.text("pair"), |key, part| key.number(*part)),
             Value::Names(names) => {
                 key.text("names").whole(names.len() as i64);
                 names.iter().fold(key, |key, name| key.text(name))
@@ -108,7 +110,9 @@ impl Value {
                 key
             }
             Value::Field(field) => key.text("field").key(field.key()),
-            Value::Skeleton(_) | Value::ColourPattern(_) | Value::Material(_) | Value::Maps(_) => key,
+            Value::Skeleton(_) | Value::ColourPattern(_) | Value::Material(_) | Value::Maps(_) => {
+                key
+            }
         };
     }
 

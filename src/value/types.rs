@@ -95,7 +95,10 @@ pub enum Type {
 impl Type {
     /// Whether a recipe can write a value of this type as a literal.
     pub fn has_literals(self) -> bool {
-        !matches!(self, Type::Skeleton | Type::ColourPattern | Type::Material | Type::Maps)
+        !matches!(
+            self,
+            Type::Skeleton | Type::ColourPattern | Type::Material | Type::Maps
+        )
     }
 
     /// Whether values of this type are built once and cached, as opposed to wired or computed per point.

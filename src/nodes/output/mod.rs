@@ -1,1 +1,6 @@
 //! Where a recipe ends: what is written.
+
+pub mod maps;
+mod normal;
+
+pub(crate) use normal::normal_from_height;

@@ -16,37 +16,71 @@ pub static KIND: Kind = Kind {
     source: "own construction; channel names follow OpenPBR and glTF",
     inputs: &[
         Input::new("base_color", Type::Colour, "Colour of the surface.").per_point(),
-        Input::number("height", Unit::Millimetre, "Relief; positive stands out of the surface.")
-            .per_point()
-            .default("0"),
-        Input::number("roughness", Unit::One, "Roughness of the reflection: 0 mirror, 1 chalk.")
-            .per_point()
-            .default("0.5")
-            .range(0.0, 1.0),
-        Input::number("metalness", Unit::One, "1 for metal, 0 for everything else.")
-            .per_point()
-            .default("0")
-            .range(0.0, 1.0),
-        Input::number("occlusion", Unit::One, "Share of the sky that the point sees.")
-            .per_point()
-            .default("1")
-            .range(0.0, 1.0),
-        Input::number("opacity", Unit::One, "1 where there is material, 0 where there is none.")
-            .per_point()
-            .default("1")
-            .range(0.0, 1.0),
-        Input::new("extras", Type::Channels, "Channels of your own, such as `growth_time`.")
-            .per_point()
-            .optional(),
+        Input::number(
+            "height",
+            Unit::Millimetre,
+            "Relief; positive stands out of the surface.",
+        )
+        .per_point()
+        .default("0"),
+        Input::number(
+            "roughness",
+            Unit::One,
+            "Roughness of the reflection: 0 mirror, 1 chalk.",
+        )
+        .per_point()
+        .default("0.5")
+        .range(0.0, 1.0),
+        Input::number(
+            "metalness",
+            Unit::One,
+            "1 for metal, 0 for everything else.",
+        )
+        .per_point()
+        .default("0")
+        .range(0.0, 1.0),
+        Input::number(
+            "occlusion",
+            Unit::One,
+            "Share of the sky that the point sees.",
+        )
+        .per_point()
+        .default("1")
+        .range(0.0, 1.0),
+        Input::number(
+            "opacity",
+            Unit::One,
+            "1 where there is material, 0 where there is none.",
+        )
+        .per_point()
+        .default("1")
+        .range(0.0, 1.0),
+        Input::new(
+            "extras",
+            Type::Channels,
+            "Channels of your own, such as `growth_time`.",
+        )
+        .per_point()
+        .optional(),
     ],
-    outputs: &[Output::field("material", Type::Material, "The material, uncut or flat.")],
+    outputs: &[Output::field(
+        "material",
+        Type::Material,
+        "The material, uncut or flat.",
+    )],
     example: r##"(nodes: { "example": material(base_color: "#c8a06e", roughness: 0.6) })"##,
     build,
 };
 
 /// The channels that every material has, in the order of the inputs.
-pub const STANDARD_CHANNELS: [&str; 6] =
-    ["base_color", "height", "roughness", "metalness", "occlusion", "opacity"];
+pub const STANDARD_CHANNELS: [&str; 6] = [
+    "base_color",
+    "height",
+    "roughness",
+    "metalness",
+    "occlusion",
+    "opacity",
+];
 
 fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let standard = STANDARD_CHANNELS.map(|name| (name.to_owned(), inputs.field(name)));
@@ -61,5 +95,9 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         }
     }
     let domain = common_domain(channels.values());
-    Ok(vec![Value::Material(Arc::new(Material { domain, channels, size: None }))])
+    Ok(vec![Value::Material(Arc::new(Material {
+        domain,
+        channels,
+        size: None,
+    }))])
 }

@@ -1,0 +1,3 @@
+//! Cuts: they make a flat piece out of a solid.
+
+pub mod slice_cut;

@@ -1,0 +1,190 @@
+//! `maps`: writes channels of a flat piece as image files, one file a channel.
+//!
+//! A file is called after the output and the channel: `board_base_color.png`. The picture's upper left
+//! corner is the piece's; v points up. PNG holds sRGB for colours and plain values for the rest: ratios
+//! as they are, normals as (n + 1) / 2, lengths and extras scaled from their range. EXR holds everything
+//! as it is, colours linear.
+
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::nodes::surface::material::STANDARD_CHANNELS;
+use crate::value::{Domain, MapFormat, Maps, Material, Type, Unit, Value};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Largest width and height of a picture in pixels.
+const LARGEST_SIDE: u32 = 65_536;
+
+/// Writes channels of a flat piece as image files.
+pub static KIND: Kind = Kind {
+    name: "maps",
+    version: 1,
+    about: "Writes channels of a flat piece as image files; stands in `outputs`.",
+    source: "own construction; conventions of OpenPBR, glTF and OpenEXR",
+    inputs: &[
+        Input::new("of", Type::Material, "The piece.").of(Domain::Plane),
+        Input::number(
+            "pixels_per_mm",
+            Unit::PixelPerMillimetre,
+            "Resolution; the picture's size follows from the piece's.",
+        )
+        .optional()
+        .range(1e-4, 1e4),
+        Input::new(
+            "pixels",
+            Type::Pair(Unit::Pixel),
+            "Size of the picture, instead of `pixels_per_mm`.",
+        )
+        .optional()
+        .range(1.0, LARGEST_SIDE as f64),
+        Input::new(
+            "channels",
+            Type::Names,
+            "Channels to write: standard ones, `normal`, and extras.",
+        )
+        .default("[base_color]"),
+        Input::new(
+            "format",
+            Type::Choice(&MapFormat::NAMES),
+            "File format and sample type.",
+        )
+        .default("png8"),
+        Input::new(
+            "ranges",
+            Type::List(&Type::Record(RANGE)),
+            "What a PNG writes as black and as white.",
+        )
+        .default("[]"),
+    ],
+    outputs: &[Output::new("maps", Type::Maps, "The files.")],
+    example: r##"(nodes: {
+        "wood": material(base_color: "#c8a06e"),
+        "board": slice_cut(of: "wood", cut: end_grain, origin: (0, 0, 500), size: (100, 50)),
+        "example": maps(of: "board", pixels_per_mm: 2, channels: [base_color, height]),
+    })"##,
+    build,
+};
+
+const RANGE: &[Input] = &[
+    Input::new("channel", Type::Text, "Name of the channel."),
+    Input::number(
+        "low",
+        Unit::One,
+        "Value that becomes black, in the channel's unit.",
+    ),
+    Input::number(
+        "high",
+        Unit::One,
+        "Value that becomes white, in the channel's unit.",
+    ),
+];
+
+fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let material = inputs.material("of");
+    let Some(size) = material.size else {
+        return Err(
+            Failure::of_input("of", "the material is not a cut piece, so it has no size")
+                .with_hint("cut it first, for example with `slice_cut`"),
+        );
+    };
+    let format = MapFormat::from_name(inputs.choice("format"))
+        .expect("the format is one of the names that the input declares");
+    let channels = inputs.names("channels").to_vec();
+    let ranges = ranges(inputs)?;
+    for channel in &channels {
+        check_channel(channel, material, format, &ranges)?;
+    }
+    let mut sorted = channels.clone();
+    sorted.sort();
+    if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        let message = format!("the channel `{}` is listed twice", twice[0]);
+        return Err(Failure::of_input("channels", message).with_hint("remove one of them"));
+    }
+    let pixels = pixels(inputs, size)?;
+    let maps = Maps {
+        material: (**material).clone(),
+        pixels,
+        size,
+        channels,
+        format,
+        ranges,
+    };
+    Ok(vec![Value::Maps(Arc::new(maps))])
+}
+
+fn ranges(inputs: &Inputs<'_>) -> Result<BTreeMap<String, [f64; 2]>, Failure> {
+    let mut ranges = BTreeMap::new();
+    for item in inputs.list("ranges") {
+        let Value::Record(parts) = item else { continue };
+        let [
+            (_, Value::Text(channel)),
+            (_, Value::Number(low)),
+            (_, Value::Number(high)),
+        ] = parts.as_slice()
+        else {
+            continue;
+        };
+        if low == high {
+            let message = format!("the range of `{channel}` is empty: {low} to {high}");
+            return Err(Failure::of_input("ranges", message));
+        }
+        ranges.insert(channel.clone(), [*low, *high]);
+    }
+    Ok(ranges)
+}
+
+fn check_channel(
+    channel: &str,
+    material: &Material,
+    format: MapFormat,
+    ranges: &BTreeMap<String, [f64; 2]>,
+) -> Result<(), Failure> {
+    let known = channel == "normal" || material.channels.contains_key(channel);
+    if !known {
+        let mut names: Vec<&str> = material.channels.keys().map(String::as_str).collect();
+        names.push("normal");
+        let message = format!("the material has no channel `{channel}`");
+        return Err(Failure::of_input("channels", message)
+            .with_hint(format!("it has {}", names.join(", "))));
+    }
+    let is_ratio =
+        channel == "normal" || (channel != "height" && STANDARD_CHANNELS.contains(&channel));
+    let is_number = material
+        .channels
+        .get(channel)
+        .is_some_and(|field| field.width() == 1);
+    if format.extension() == "png" && is_number && !is_ratio && !ranges.contains_key(channel) {
+        let message =
+            format!("a PNG of `{channel}` needs to know which values are black and white");
+        return Err(Failure::of_input("channels", message).with_hint(format!(
+            "add `ranges: [(channel: \"{channel}\", low: 0, high: 1)]` with its values, or write EXR"
+        )));
+    }
+    Ok(())
+}
+
+/// Width and height of the picture, from its resolution or as stated.
+fn pixels(inputs: &Inputs<'_>, size: [f64; 2]) -> Result<[u32; 2], Failure> {
+    match (inputs.get("pixels_per_mm"), inputs.get("pixels")) {
+        (Some(_), None) => {
+            let resolution = inputs.number("pixels_per_mm");
+            let pixels = size.map(|length| (length * resolution).round().max(1.0));
+            if pixels.iter().any(|side| *side > f64::from(LARGEST_SIDE)) {
+                let message = format!(
+                    "the picture would be {} x {} pixels; the largest side is {LARGEST_SIDE}",
+                    pixels[0], pixels[1]
+                );
+                return Err(Failure::of_input("pixels_per_mm", message)
+                    .with_hint("lower `pixels_per_mm`, or cut a smaller piece"));
+            }
+            Ok(pixels.map(|side| side as u32))
+        }
+        (None, Some(_)) => Ok(inputs.pair("pixels").map(|side| side.round() as u32)),
+        (None, None) => Err(Failure::new("neither `pixels_per_mm` nor `pixels` is set")
+            .with_hint("add `pixels_per_mm: 4`")),
+        (Some(_), Some(_)) => Err(Failure::of_input(
+            "pixels",
+            "both `pixels_per_mm` and `pixels` are set",
+        )
+        .with_hint("remove one of them")),
+    }
+}
