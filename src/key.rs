@@ -21,6 +21,13 @@ impl Key {
         blake3::Hash::from_bytes(self.0).to_hex().to_string()
     }
 
+    /// The key with these hexadecimal digits; `None` if it is not 64 of them.
+    pub fn from_hexadecimal(digits: &str) -> Option<Key> {
+        blake3::Hash::from_hex(digits)
+            .ok()
+            .map(|hash| Key(*hash.as_bytes()))
+    }
+
     /// The first eight bytes as a number, where a short hash is enough.
     pub fn short(&self) -> u64 {
         let [a, b, c, d, e, f, g, h, ..] = self.0;
@@ -91,6 +98,14 @@ impl KeyHasher {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_key_is_read_back_from_its_digits() {
+        let key = Key::of_bytes(b"wood");
+        assert_eq!(Key::from_hexadecimal(&key.hexadecimal()), Some(key));
+        assert_eq!(Key::from_hexadecimal(&key.hexadecimal()[1..]), None);
+        assert_eq!(Key::from_hexadecimal(&"x".repeat(64)), None);
+    }
 
     #[test]
     fn zero_has_one_key_and_lengths_keep_texts_apart() {

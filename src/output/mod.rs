@@ -1,1 +1,205 @@
-//! output
+//! Maps as files: samples are made tile by tile, and files are written row by row.
+//!
+//! An [`Encoder`] turns columns of numbers into the bytes of pixels, from as many threads as one likes. A
+//! [`MapWriter`] takes whole rows of such bytes from top to bottom, compresses them and forgets them: it
+//! holds a block of rows, never the image. The file appears when it is finished, all at once.
+
+mod encode;
+mod exr;
+mod png;
+mod srgb;
+
+pub use encode::{Encoder, Faults, MapKind};
+
+use crate::key::Key;
+use crate::value::MapFormat;
+use crate::world::World;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The name under which PNG text and EXR attributes carry the key of a map.
+const KEY_NAME: &str = "yosegi:key";
+/// The name under which they carry the name of the channel.
+const CHANNEL_NAME: &str = "yosegi:channel";
+/// What they name as the program that wrote them.
+const SOFTWARE: &str = "Yosegi";
+
+/// A map to be written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapRequest {
+    /// Width and height in pixels.
+    pub pixels: [u32; 2],
+    /// Width and height of the piece in mm; the file tells its resolution by them.
+    pub size_mm: [f64; 2],
+    /// What the samples are.
+    pub kind: MapKind,
+    /// How the samples are written.
+    pub format: MapFormat,
+    /// The key of the output, by which [`read_key`] knows it again.
+    pub key: Key,
+    /// The name of the channel, in ASCII.
+    pub channel: String,
+}
+
+impl MapRequest {
+    /// The bytes of one row, as the [`Encoder`] makes them.
+    pub fn row_bytes(&self) -> usize {
+        let encoder = Encoder::new(self.kind, self.format, None);
+        self.pixels[0] as usize * encoder.pixel_bytes()
+    }
+
+    /// Pixels per mm in both directions; `None` where the size says nothing.
+    fn density(&self) -> Option<[f64; 2]> {
+        let density = [0, 1].map(|axis| f64::from(self.pixels[axis]) / self.size_mm[axis]);
+        density
+            .iter()
+            .all(|it| it.is_finite() && *it > 0.0)
+            .then_some(density)
+    }
+
+    fn check(&self) -> io::Result<()> {
+        // The widest row that fits into a block of OpenEXR, and the largest side of a PNG.
+        let [width, height] = self.pixels;
+        if width == 0 || height == 0 || width > 1 << 22 || height > i32::MAX as u32 {
+            return Err(invalid(format!(
+                "expected a map of 1 to 4194304 by 1 to 2147483647 pixels, found {width} by {height}"
+            )));
+        }
+        if self.channel.is_empty() || !self.channel.bytes().all(|byte| byte.is_ascii_graphic()) {
+            return Err(invalid(format!(
+                "expected a channel name in ASCII, found {:?}",
+                self.channel
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// A map that is being written. Dropped before it is finished, it leaves nothing behind.
+pub trait MapWriter: Send {
+    /// Writes the next rows, from top to bottom: any number of whole ones, their pixels as the
+    /// [`Encoder`] makes them. How rows are grouped into calls does not change the file.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or the bytes are no whole rows or too many. The map is then given
+    /// up: it can only be dropped.
+    fn write_rows(&mut self, rows: &[u8]) -> io::Result<()>;
+
+    /// Completes the file and puts it in its place.
+    ///
+    /// # Errors
+    /// If rows are missing, or the file cannot be written. Nothing is then left behind.
+    fn finish(self: Box<Self>) -> io::Result<()>;
+}
+
+/// Starts a map at `path`, which holds nothing new until the map is finished.
+///
+/// # Errors
+/// If the request cannot be written in its format, or the file cannot be made. The message names the path.
+pub fn create(
+    world: &dyn World,
+    path: &Path,
+    request: &MapRequest,
+) -> io::Result<Box<dyn MapWriter>> {
+    let start = || -> io::Result<Box<dyn MapWriter>> {
+        request.check()?;
+        let file = world.create(path)?;
+        Ok(match request.format {
+            MapFormat::Png8 | MapFormat::Png16 => Box::new(png::PngWriter::new(file, request)?),
+            MapFormat::ExrHalf | MapFormat::ExrFloat => {
+                Box::new(exr::ExrWriter::new(file, request)?)
+            }
+        })
+    };
+    Ok(Box::new(Guarded {
+        writer: Some(start().map_err(|error| about(path, &error))?),
+        path: path.to_owned(),
+        row_bytes: request.row_bytes(),
+        missing_rows: request.pixels[1] as usize,
+    }))
+}
+
+/// The key that a map was written with, read from the start of the file; `None` if there is no such
+/// file, or it is no PNG or OpenEXR, or it carries no key.
+pub fn read_key(world: &dyn World, path: &Path) -> Option<Key> {
+    // Headers of ours end within the first thousand bytes; other programs write longer ones.
+    const START: usize = 1 << 16;
+    let start = world.read_start(path, START).ok()?;
+    let digits = if start.starts_with(b"\x89PNG") {
+        png::read_text(&start, KEY_NAME)
+    } else {
+        exr::read_text(&start, KEY_NAME)
+    };
+    Key::from_hexadecimal(&digits?)
+}
+
+/// A writer that gets whole rows, as many as the map has, and nothing more after an error.
+struct Guarded {
+    /// `None` once something failed: what was written so far is gone then.
+    writer: Option<Box<dyn MapWriter>>,
+    path: PathBuf,
+    row_bytes: usize,
+    missing_rows: usize,
+}
+
+impl Guarded {
+    fn take_rows(&mut self, rows: &[u8]) -> io::Result<()> {
+        let count = rows.len() / self.row_bytes;
+        if count * self.row_bytes != rows.len() {
+            let found = rows.len();
+            return Err(invalid(format!(
+                "expected rows of {} bytes, found {found} bytes",
+                self.row_bytes
+            )));
+        }
+        let message = || format!("expected {} more rows, found {count}", self.missing_rows);
+        self.missing_rows = self
+            .missing_rows
+            .checked_sub(count)
+            .ok_or_else(|| invalid(message()))?;
+        let writer = self
+            .writer
+            .as_mut()
+            .ok_or_else(|| invalid("an earlier write failed"))?;
+        if rows.is_empty() {
+            Ok(())
+        } else {
+            writer.write_rows(rows)
+        }
+    }
+
+    fn complete(&mut self) -> io::Result<()> {
+        let writer = self
+            .writer
+            .take()
+            .ok_or_else(|| invalid("an earlier write failed"))?;
+        if self.missing_rows > 0 {
+            return Err(invalid(format!("{} rows are missing", self.missing_rows)));
+        }
+        writer.finish()
+    }
+}
+
+impl MapWriter for Guarded {
+    fn write_rows(&mut self, rows: &[u8]) -> io::Result<()> {
+        self.take_rows(rows).map_err(|error| {
+            self.writer = None;
+            about(&self.path, &error)
+        })
+    }
+
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
+        self.complete().map_err(|error| about(&self.path, &error))
+    }
+}
+
+fn invalid(message: impl Into<String>) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, message.into())
+}
+
+fn about(path: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(
+        error.kind(),
+        format!("cannot write `{}`: {error}", path.display()),
+    )
+}

@@ -1,0 +1,233 @@
+//! The world on disk: files are replaced by a rename, so a reader sees the old one or the new one.
+
+use super::{PendingFile, World};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// The disk.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Disk;
+
+impl World for Disk {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        require_regular(path)?;
+        fs::read(path)
+    }
+
+    fn read_start(&self, path: &Path, length: usize) -> io::Result<Vec<u8>> {
+        require_regular(path)?;
+        let mut bytes = Vec::new();
+        File::open(path)?
+            .take(length as u64)
+            .read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
+        let path = behind_links(path)?;
+        if path.exists() {
+            // A folder cannot be replaced, and a device must not be.
+            require_regular(&path)?;
+        }
+        let folder = folder_of(&path);
+        fs::create_dir_all(folder)?;
+        let file = BufWriter::with_capacity(1 << 18, temporary_file(folder)?);
+        Ok(Box::new(DiskFile { file, path }))
+    }
+}
+
+/// Refuses folders, and what would never end, such as a FIFO or a device.
+fn require_regular(path: &Path) -> io::Result<()> {
+    if fs::metadata(path)?.is_file() {
+        return Ok(());
+    }
+    Err(io::Error::new(
+        io::ErrorKind::InvalidInput,
+        "not a regular file",
+    ))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Where a file named `path` really lies: a rename would replace the link instead of its target.
+fn behind_links(path: &Path) -> io::Result<PathBuf> {
+    // As many as Linux follows.
+    const LIMIT: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..LIMIT {
+        if !path.is_symlink() {
+            return Ok(path);
+        }
+        path = folder_of(&path).join(fs::read_link(&path)?);
+    }
+    Err(io::Error::new(
+        io::ErrorKind::InvalidInput,
+        "too many symbolic links",
+    ))
+}
+
+fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".yosegi-").suffix(".part");
+    #[cfg(unix)]
+    builder.permissions(ordinary_permissions());
+    builder.tempfile_in(folder)
+}
+
+/// What a plain new file gets, instead of the owner-only mode of temporary files; the umask applies.
+#[cfg(unix)]
+fn ordinary_permissions() -> fs::Permissions {
+    use std::os::unix::fs::PermissionsExt;
+    fs::Permissions::from_mode(0o666)
+}
+
+struct DiskFile {
+    file: BufWriter<NamedTempFile>,
+    path: PathBuf,
+}
+
+impl Write for DiskFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for DiskFile {
+    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
+impl PendingFile for DiskFile {
+    fn commit(self: Box<Self>) -> io::Result<()> {
+        let file = self
+            .file
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)?;
+        keep_permissions(file.as_file(), &self.path)?;
+        file.persist(&self.path)?;
+        Ok(())
+    }
+}
+
+/// Gives the new file the mode of the one that it replaces.
+fn keep_permissions(file: &File, replaced: &Path) -> io::Result<()> {
+    let old = match fs::metadata(replaced) {
+        Ok(metadata) => metadata.permissions(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(error),
+    };
+    // File systems without modes refuse to set one, even the one they report.
+    if file.metadata()?.permissions() == old {
+        return Ok(());
+    }
+    file.set_permissions(old)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write(path: &Path, bytes: &[u8]) {
+        let mut file = Disk.create(path).unwrap();
+        file.write_all(bytes).unwrap();
+        file.commit().unwrap();
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let name = |entry: io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string();
+        let mut names: Vec<String> = entries.map(|entry| name(entry).unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_appears_only_when_it_is_committed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new/map.png");
+        let mut file = Disk.create(&path).unwrap();
+        file.write_all(b"half").unwrap();
+        assert!(!path.exists());
+        drop(file);
+        assert_eq!(names(&folder.path().join("new")), [""; 0]);
+        write(&path, b"whole");
+        assert_eq!(fs::read(&path).unwrap(), b"whole");
+        assert_eq!(names(&folder.path().join("new")), ["map.png"]);
+    }
+
+    #[test]
+    fn a_dropped_file_leaves_the_old_one_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.png");
+        write(&path, b"old");
+        let mut file = Disk.create(&path).unwrap();
+        file.write_all(b"new").unwrap();
+        drop(file);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["map.png"]);
+    }
+
+    #[test]
+    fn only_the_asked_part_of_a_file_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.png");
+        write(&path, b"abcdef");
+        assert_eq!(Disk.read_start(&path, 3).unwrap(), b"abc");
+        assert_eq!(Disk.read_start(&path, 9).unwrap(), b"abcdef");
+        assert!(Disk.read_start(folder.path(), 3).is_err());
+    }
+
+    #[test]
+    fn a_folder_is_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = Disk.create(folder.path()).err().unwrap();
+        assert_eq!(error.to_string(), "not a regular file");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_mode_of_a_replaced_file_is_kept_and_a_new_one_is_ordinary() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o7777;
+        let [path, plain] = ["map.png", "plain"].map(|name| folder.path().join(name));
+        write(&path, b"old");
+        File::create(&plain).unwrap();
+        assert_eq!(mode(&path), mode(&plain));
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o604)).unwrap();
+        write(&path, b"new");
+        assert_eq!(mode(&path), 0o604);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed_and_stays_a_link() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        fs::create_dir(place("real")).unwrap();
+        symlink("real/map.png", place("first")).unwrap();
+        symlink(place("first"), place("second")).unwrap();
+        // The target does not exist yet, then it does.
+        for bytes in [b"one", b"two"] {
+            write(&place("second"), bytes);
+            assert_eq!(fs::read(place("real/map.png")).unwrap(), bytes);
+            assert!(place("first").is_symlink() && place("second").is_symlink());
+        }
+        symlink("loop", place("loop")).unwrap();
+        let error = Disk.create(&place("loop")).err().unwrap();
+        assert_eq!(error.to_string(), "too many symbolic links");
+    }
+}

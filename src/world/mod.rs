@@ -1,0 +1,45 @@
+//! The one door to files: everything that Yosegi reads or writes passes here.
+
+mod disk;
+mod memory;
+
+pub use disk::Disk;
+pub use memory::Memory;
+
+use std::io::{self, Seek, Write};
+use std::path::Path;
+
+/// Where recipes, assets and the store are read from, and where maps go.
+pub trait World: Send + Sync {
+    /// The contents of a file.
+    ///
+    /// # Errors
+    /// Whatever the operating system says; a folder or a device is an error as well.
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+
+    /// The first `length` bytes of a file, or all of it if it is shorter.
+    ///
+    /// # Errors
+    /// As [`World::read`].
+    fn read_start(&self, path: &Path, length: usize) -> io::Result<Vec<u8>> {
+        let mut bytes = self.read(path)?;
+        bytes.truncate(length);
+        Ok(bytes)
+    }
+
+    /// Starts a file that appears at `path` only when it is committed. Missing folders are made; a
+    /// symbolic link at `path` is followed.
+    ///
+    /// # Errors
+    /// Whatever the operating system says.
+    fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>>;
+}
+
+/// A file that is not there yet: dropped without a commit, it leaves nothing behind.
+pub trait PendingFile: Write + Seek + Send {
+    /// Puts the file in its place at once, replacing what was there.
+    ///
+    /// # Errors
+    /// Whatever the operating system says; the old file is then still whole.
+    fn commit(self: Box<Self>) -> io::Result<()>;
+}
