@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::io::{self, Read};
 
 /// The hash that identifies a value, a field or an output.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -14,6 +15,24 @@ impl Key {
     /// The key of plain bytes, for example the contents of a file.
     pub fn of_bytes(bytes: &[u8]) -> Key {
         Key(*blake3::hash(bytes).as_bytes())
+    }
+
+    /// The key of the bytes that a stream gives, with their number.
+    ///
+    /// # Errors
+    /// Whatever the stream says.
+    pub fn of_stream(stream: &mut dyn Read) -> io::Result<(Key, u64)> {
+        let mut hasher = blake3::Hasher::new();
+        let mut buffer = vec![0; 1 << 16];
+        let mut length = 0;
+        loop {
+            let read = stream.read(&mut buffer)?;
+            if read == 0 {
+                return Ok((Key(*hasher.finalize().as_bytes()), length));
+            }
+            hasher.update(&buffer[..read]);
+            length += read as u64;
+        }
     }
 
     /// The 64 hexadecimal digits of the key, as written into maps and names of cache entries.

@@ -8,6 +8,8 @@
 //!
 //! `ARCHITECTURE.md` has the map, the glossary, the life of an edit and the invariants.
 
+#![forbid(unsafe_code)]
+
 pub mod colour;
 pub mod diagnostics;
 pub mod engine;

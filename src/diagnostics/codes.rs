@@ -156,6 +156,12 @@ codes! {
     UnusedParameter, "unused-parameter",
         "Nothing in the recipe refers to the parameter, so setting it changes nothing. This is a \
          warning.";
+    OutputNotWritten, "output-not-written",
+        "A map could not be written: the folder does not exist and cannot be made, the disk is full, or \
+         the system refused. What was there before is still whole.";
+    TooMuch, "too-much",
+        "The maps asked for are larger than the limit on one run. The message names the limit and the \
+         switch that raises it.";
     NodeFailed, "node-failed",
         "A node could not be built from its inputs although each of them is valid. Nodes that depend \
          on it are skipped; everything else is still rendered.";

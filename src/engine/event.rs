@@ -59,9 +59,7 @@ pub enum Event {
         channel: String,
         /// The file.
         path: PathBuf,
-        /// Its size in bytes.
-        bytes: u64,
-        /// Samples that were not finite and were written as 0.
+        /// Samples that were not finite: a PNG holds 0 or the nearest it can.
         not_finite: u64,
         /// Samples outside the range that the format can hold.
         clamped: u64,

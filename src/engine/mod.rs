@@ -1,1 +1,151 @@
-//! engine
+//! Evaluates checked graphs: plans, builds structures, paints outputs, remembers both.
+
+mod arithmetic;
+mod build;
+mod cancel;
+mod content;
+mod event;
+mod memory;
+mod paint;
+mod plan;
+mod render;
+mod sample;
+mod store;
+mod target;
+
+pub use cancel::Cancel;
+pub use event::{Event, From as ReusedFrom, Listener};
+pub use render::{Render, RenderedMap};
+pub use sample::SampledField;
+pub use target::FlatPiece;
+
+use crate::diagnostics::{Code, Diagnostic};
+use crate::field::{ColumnCache, RunContext};
+use crate::graph::Graph;
+use crate::world::World;
+use build::{Builder, Built};
+use fearless_simd::Level;
+use memory::Memory;
+use petgraph::graph::NodeIndex;
+use plan::Plan;
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use store::Store;
+
+/// How an engine works. None of it changes a result.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Number of threads; `None` takes all processors.
+    pub threads: Option<usize>,
+    /// Side of a tile in pixels.
+    pub tile: u32,
+    /// Vector instructions; `None` takes the best of the machine.
+    pub level: Option<Level>,
+    /// Bytes that structures and columns may take in memory between runs.
+    pub memory: usize,
+    /// The folder of the store; `None` keeps nothing on disk.
+    pub store: Option<PathBuf>,
+    /// Most pixels that one output may have.
+    pub largest_output: u64,
+    /// Whether fields are filtered. Off only to show what filtering is good for: this one changes results.
+    pub filtering: bool,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            threads: None,
+            tile: 128,
+            level: None,
+            memory: 512 << 20,
+            store: None,
+            largest_output: 1 << 30,
+            filtering: true,
+        }
+    }
+}
+
+/// Evaluates recipes, and remembers what it has made.
+pub struct Engine {
+    world: Arc<dyn World>,
+    options: Options,
+    memory: Memory,
+    store: Option<Store>,
+    threads: rayon::ThreadPool,
+}
+
+/// Why a run ended without its results.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RunError {
+    /// Nodes could not be built.
+    Nodes(Vec<Diagnostic>),
+    /// Files could not be read or written.
+    Files(Vec<Diagnostic>),
+    /// A limit was reached.
+    Limit(Vec<Diagnostic>),
+    /// What was asked for does not exist in the recipe.
+    Request(Vec<Diagnostic>),
+    /// The run was cancelled.
+    Cancelled,
+}
+
+impl RunError {
+    /// What is wrong; empty for a cancelled run.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        match self {
+            RunError::Nodes(diagnostics)
+            | RunError::Files(diagnostics)
+            | RunError::Limit(diagnostics)
+            | RunError::Request(diagnostics) => diagnostics,
+            RunError::Cancelled => &[],
+        }
+    }
+
+    fn not_written(error: &io::Error) -> RunError {
+        RunError::Files(vec![Diagnostic::error(Code::OutputNotWritten, error.to_string())])
+    }
+}
+
+impl Engine {
+    /// An engine that reads and writes through `world`.
+    ///
+    /// # Errors
+    /// If the system gives no threads.
+    pub fn new(world: Arc<dyn World>, options: Options) -> io::Result<Engine> {
+        let threads = rayon::ThreadPoolBuilder::new()
+            .num_threads(options.threads.unwrap_or(0))
+            .build()
+            .map_err(io::Error::other)?;
+        let store = options.store.clone().map(|folder| Store::new(Arc::clone(&world), folder));
+        Ok(Engine { memory: Memory::new(options.memory), world, options, store, threads })
+    }
+
+    /// Bytes of structures and columns that the engine remembers.
+    pub fn remembered_bytes(&self) -> usize {
+        self.memory.bytes()
+    }
+
+    fn build(
+        &self,
+        plan: &Plan<'_>,
+        listener: &dyn Listener,
+        cancel: &Cancel,
+    ) -> Result<Built, RunError> {
+        let builder =
+            Builder { memory: &self.memory, store: self.store.as_ref(), listener, cancel };
+        builder.build(plan)
+    }
+
+    fn plan<'g>(&self, graph: &'g Graph, wanted: &[NodeIndex]) -> Result<Plan<'g>, RunError> {
+        Plan::new(graph, wanted, &*self.world)
+    }
+
+    fn context(&self) -> RunContext<'_> {
+        RunContext {
+            level: self.options.level.unwrap_or_else(Level::new),
+            cache: self.memory.is_enabled().then_some(&self.memory as &dyn ColumnCache),
+            filtering: self.options.filtering,
+        }
+    }
+}

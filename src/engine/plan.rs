@@ -9,6 +9,7 @@ use crate::world::World;
 use petgraph::Direction;
 use petgraph::graph::NodeIndex;
 use std::collections::HashMap;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The part of a graph that some nodes depend on.
@@ -119,7 +120,7 @@ fn read_files(
             if files.contains_key(path) {
                 continue;
             }
-            match world.read(&folder.join(path)) {
+            match read_beside(world, folder, path) {
                 Ok(bytes) => {
                     let contents = FileContents { path: path.clone(), bytes: bytes.into() };
                     files.insert(path.clone(), contents);
@@ -131,12 +132,29 @@ fn read_files(
                     )
                     .at(&graph.source, binding.span.clone(), format!("named by `{}`", input.name))
                     .in_node(&*node.name)
-                    .hint(format!("files are looked for beside the recipe, in `{}`", shown(folder))),
+                    .hint(format!(
+                        "files are looked for in `{0}`, in `{0}/assets` and in `{0}/../assets`",
+                        shown(folder)
+                    )),
                 ),
             }
         }
     }
     if errors.is_empty() { Ok(files) } else { Err(RunError::Files(errors)) }
+}
+
+/// Reads a file that a recipe names: beside it, from the assets in its folder, or from those beside its
+/// folder, whichever comes first.
+fn read_beside(world: &dyn World, folder: &Path, path: &Path) -> io::Result<Vec<u8>> {
+    let places = [folder.join(path), folder.join("assets").join(path), folder.join("../assets").join(path)];
+    let mut missing = io::Error::from(io::ErrorKind::NotFound);
+    for place in places {
+        match world.read(&place) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => missing = error,
+            read => return read,
+        }
+    }
+    Err(missing)
 }
 
 /// The folder as a person would write it.

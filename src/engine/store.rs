@@ -5,6 +5,7 @@
 //! store everything is computed.
 
 use crate::key::Key;
+use crate::output;
 use crate::world::World;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -74,13 +75,37 @@ impl Store {
     /// # Errors
     /// Whatever the operating system says.
     pub(super) fn put_map(&self, key: &Key, path: &Path) -> io::Result<()> {
-        let contents = self.world.read(path)?;
-        let record = MapRecord { file: Key::of_bytes(&contents), bytes: contents.len() as u64 };
+        let record = self.record(path)?;
         if record.bytes <= LARGEST_COPY {
-            self.put("file", &record.file, &contents)?;
+            self.put("file", &record.file, &self.world.read(path)?)?;
         }
         let bytes = postcard::to_stdvec(&record).map_err(io::Error::other)?;
         self.put("map", key, &bytes)
+    }
+
+    /// Whether the file at `path` is the map `key` as the store remembers it.
+    pub(super) fn matches(&self, record: &MapRecord, key: &Key, path: &Path) -> bool {
+        // The key inside is quicker to compare, but a paint program may have kept it.
+        output::read_key(&*self.world, path) == Some(*key)
+            && self.record(path).is_ok_and(|found| found == *record)
+    }
+
+    /// Puts a remembered map at `path`; false if its contents are not in the store.
+    pub(super) fn restore(&self, record: &MapRecord, path: &Path) -> bool {
+        let Some(contents) = self.get("file", &record.file) else { return false };
+        let write = || {
+            let mut file = self.world.create(path)?;
+            file.write_all(&contents)?;
+            file.commit()
+        };
+        write().is_ok()
+    }
+
+    /// Hash and size of a file, read as a stream.
+    fn record(&self, path: &Path) -> io::Result<MapRecord> {
+        let mut stream = self.world.open(path)?;
+        let (file, bytes) = Key::of_stream(&mut stream)?;
+        Ok(MapRecord { file, bytes })
     }
 
     fn path(&self, family: &str, key: &Key) -> PathBuf {

@@ -14,7 +14,7 @@ mod supersample;
 
 pub use compile::Program;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};
-pub use run::{ColumnCache, Columns, RunContext, Scratch};
+pub use run::{ColumnCache, Columns, RunContext, Scratch, Work};
 pub use samples::{PixelGrid, Samples, Target};
 
 use crate::key::{Key, KeyHasher};

@@ -122,6 +122,11 @@ impl Program {
         scratch.column(self.outputs[output][column])
     }
 
+    /// All columns of output `output` after a run.
+    pub fn columns<'a>(&self, scratch: &'a Scratch, output: usize) -> Vec<&'a [f32]> {
+        self.outputs[output].iter().map(|slot| scratch.column(*slot)).collect()
+    }
+
     /// Looks up the columns that a cache may hold.
     fn stored(&self, samples: &Samples<'_>, context: &RunContext<'_>) -> Vec<Stored> {
         let Some(cache) = context.cache else {

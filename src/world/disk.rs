@@ -16,6 +16,11 @@ impl World for Disk {
         fs::read(path)
     }
 
+    fn open(&self, path: &Path) -> io::Result<Box<dyn Read>> {
+        require_regular(path)?;
+        Ok(Box::new(File::open(path)?))
+    }
+
     fn read_start(&self, path: &Path, length: usize) -> io::Result<Vec<u8>> {
         require_regular(path)?;
         let mut bytes = Vec::new();

@@ -6,7 +6,7 @@ mod memory;
 pub use disk::Disk;
 pub use memory::Memory;
 
-use std::io::{self, Seek, Write};
+use std::io::{self, Read, Seek, Write};
 use std::path::Path;
 
 /// Where recipes, assets and the store are read from, and where maps go.
@@ -16,6 +16,14 @@ pub trait World: Send + Sync {
     /// # Errors
     /// Whatever the operating system says; a folder or a device is an error as well.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+
+    /// The file as a stream, for contents too large to hold.
+    ///
+    /// # Errors
+    /// As [`World::read`].
+    fn open(&self, path: &Path) -> io::Result<Box<dyn Read>> {
+        Ok(Box::new(io::Cursor::new(self.read(path)?)))
+    }
 
     /// The first `length` bytes of a file, or all of it if it is shorter.
     ///

@@ -1,0 +1,125 @@
+//! Samples fields of any node at points of the caller's own, unfiltered.
+
+use super::event::Listener;
+use super::{Cancel, Engine, RunError};
+use crate::diagnostics::{Code, Diagnostic, nearest};
+use crate::field::{Field, Program, Samples, Scratch};
+use crate::graph::Graph;
+use crate::node::field_of;
+use crate::value::{Type, Value};
+use petgraph::graph::NodeIndex;
+
+/// Points evaluated in one go.
+const BLOCK: usize = 4096;
+
+/// A field with the names of its components.
+#[derive(Clone, Debug)]
+pub struct SampledField {
+    /// The field.
+    pub field: Field,
+    /// A name for each of its columns, for example `colour.r`.
+    pub columns: Vec<String>,
+}
+
+impl Engine {
+    /// The fields that a node gives: `name` is a node, `node.output`, or for a material `node.channel`.
+    ///
+    /// # Errors
+    /// If there is no such node or it gives no fields, or if nodes cannot be built.
+    pub fn fields(
+        &self,
+        graph: &Graph,
+        name: &str,
+        listener: &dyn Listener,
+    ) -> Result<Vec<SampledField>, RunError> {
+        let (node, part) = name.split_once('.').map_or((name, None), |(node, part)| (node, Some(part)));
+        let index = find(graph, node)?;
+        let plan = self.plan(graph, &[index])?;
+        let built =
+            self.threads.install(|| self.build(&plan, listener, &Cancel::new()))?;
+        let fields = fields_of(graph, index, built.values(index));
+        let chosen: Vec<SampledField> = fields
+            .iter()
+            .filter(|(name, _)| part.is_none_or(|part| part == name))
+            .map(|(_, field)| field.clone())
+            .collect();
+        if chosen.is_empty() { Err(no_fields(graph, index, part, &fields)) } else { Ok(chosen) }
+    }
+
+    /// The values of fields at `points`: for each field its columns, for each column its values.
+    pub fn sample(&self, fields: &[SampledField], points: &[[f64; 3]]) -> Vec<Vec<Vec<f32>>> {
+        let plain: Vec<Field> = fields.iter().map(|sampled| sampled.field.clone()).collect();
+        let program = Program::compile(&plain);
+        let mut scratch = Scratch::default();
+        let mut context = self.context();
+        context.cache = None;
+        let mut values: Vec<Vec<Vec<f32>>> =
+            plain.iter().map(|field| vec![vec![]; field.width()]).collect();
+        for points in points.chunks(BLOCK) {
+            program.run(&Samples::Points(points), &mut scratch, &context);
+            for (output, columns) in values.iter_mut().enumerate() {
+                for (values, column) in columns.iter_mut().zip(program.columns(&scratch, output)) {
+                    values.extend_from_slice(&column[..points.len()]);
+                }
+            }
+        }
+        values
+    }
+}
+
+fn find(graph: &Graph, name: &str) -> Result<NodeIndex, RunError> {
+    graph.by_name.get(name).copied().ok_or_else(|| {
+        let names = graph.by_name.keys().map(String::as_str);
+        RunError::Request(vec![
+            Diagnostic::error(Code::UnknownNode, format!("the recipe has no node `{name}`"))
+                .nearest(nearest(name, names)),
+        ])
+    })
+}
+
+/// The fields among the outputs of a node; those of a material by channel.
+fn fields_of(graph: &Graph, index: NodeIndex, values: &[Value]) -> Vec<(String, SampledField)> {
+    let mut fields = vec![];
+    for (output, value) in graph.nodes[index].kind.outputs.iter().zip(values) {
+        if let Value::Material(material) = value {
+            for (channel, field) in &material.channels {
+                let is_colour = field.width() == 3;
+                fields.push((channel.clone(), sampled(channel, field.clone(), is_colour)));
+            }
+        } else if let Some(field) = field_of(value) {
+            let is_colour = output.value_type == Type::Colour;
+            fields.push((output.name.to_owned(), sampled(output.name, field, is_colour)));
+        }
+    }
+    fields
+}
+
+fn sampled(name: &str, field: Field, is_colour: bool) -> SampledField {
+    let parts: &[&str] = match (field.width(), is_colour) {
+        (1, _) => return SampledField { field, columns: vec![name.to_owned()] },
+        (_, true) => &["r", "g", "b"],
+        (_, false) => &["x", "y", "z"],
+    };
+    SampledField { field, columns: parts.iter().map(|part| format!("{name}.{part}")).collect() }
+}
+
+fn no_fields(
+    graph: &Graph,
+    index: NodeIndex,
+    part: Option<&str>,
+    fields: &[(String, SampledField)],
+) -> RunError {
+    let node = &graph.nodes[index];
+    let names: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
+    let message = match part {
+        Some(part) if !names.is_empty() => format!("`{}` gives no field `{part}`", node.name),
+        _ => format!("`{}` is a `{}`: it gives no field to sample", node.name, node.kind.name),
+    };
+    let mut diagnostic = Diagnostic::error(Code::UnknownOutput, message)
+        .at(&graph.source, node.span.clone(), "this node")
+        .nearest(nearest(part.unwrap_or_default(), names.iter().copied()));
+    if !names.is_empty() {
+        diagnostic = diagnostic.hint(format!("it gives {}", names.join(", ")));
+    }
+    RunError::Request(vec![diagnostic])
+}
