@@ -86,10 +86,17 @@ impl EngineArguments {
     /// # Errors
     /// If this machine does not have it.
     fn level(&self) -> Result<Option<Level>, String> {
-        let Some(simd) = self.simd else { return Ok(None) };
+        let Some(simd) = self.simd else {
+            return Ok(None);
+        };
         simd.level().map(Some).ok_or_else(|| {
-            let name = simd.to_possible_value().map(|value| value.get_name().to_owned());
-            format!("this machine has no {}; leave `--simd` out", name.unwrap_or_default())
+            let name = simd
+                .to_possible_value()
+                .map(|value| value.get_name().to_owned());
+            format!(
+                "this machine has no {}; leave `--simd` out",
+                name.unwrap_or_default()
+            )
         })
     }
 }
@@ -114,7 +121,10 @@ impl Simd {
 
 impl RecipeArguments {
     fn settings(&self) -> yosegi::graph::Settings {
-        yosegi::graph::Settings { set: self.set.clone(), seed: self.seed }
+        yosegi::graph::Settings {
+            set: self.set.clone(),
+            seed: self.seed,
+        }
     }
 }
 

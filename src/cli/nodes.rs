@@ -48,11 +48,21 @@ fn list() {
 }
 
 fn describe(kind: &Kind) -> String {
-    let mut text = format!("{} (version {})\n{}\n\nInputs\n", kind.name, kind.version, kind.about);
-    kind.inputs.iter().for_each(|input| describe_input(&mut text, input, 2));
+    let mut text = format!(
+        "{} (version {})\n{}\n\nInputs\n",
+        kind.name, kind.version, kind.about
+    );
+    kind.inputs
+        .iter()
+        .for_each(|input| describe_input(&mut text, input, 2));
     text += "\nOutputs\n";
     for output in kind.outputs {
-        text += &format!("  {}: {}\n      {}\n", output.name, output_type(output), output.about);
+        text += &format!(
+            "  {}: {}\n      {}\n",
+            output.name,
+            output_type(output),
+            output.about
+        );
     }
     text += &format!("\nSource\n  {}\n\nExample\n", kind.source);
     for line in kind.example.lines() {
@@ -66,7 +76,10 @@ fn describe_input(text: &mut String, input: &Input, indent: usize) {
         Varies::Constant => "",
         Varies::PerPoint => ", may differ from point to point",
     };
-    let domain = input.domain.map(|domain| format!(" ({domain})")).unwrap_or_default();
+    let domain = input
+        .domain
+        .map(|domain| format!(" ({domain})"))
+        .unwrap_or_default();
     let presence = match input.presence {
         Presence::Required => String::new(),
         Presence::Optional => "; may be left out".to_owned(),

@@ -96,13 +96,18 @@ fn render(arguments: &Arguments, engine: &Engine, recipe: &Path, cancel: &Cancel
 
 fn announce(maps: &[RenderedMap], json: bool) {
     if !json {
-        maps.iter().for_each(|map| report::line(&map.path.display().to_string()));
+        maps.iter()
+            .for_each(|map| report::line(&map.path.display().to_string()));
     }
 }
 
 /// A bar on a terminal, nothing elsewhere.
 fn progress_bar(json: bool) -> ProgressBar {
-    let target = if json { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let target = if json {
+        ProgressDrawTarget::hidden()
+    } else {
+        ProgressDrawTarget::stderr()
+    };
     let bar = ProgressBar::with_draw_target(Some(0), target);
     let style = ProgressStyle::with_template("{msg:20!} {bar:40} {percent:>3} %  {eta} left");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -115,14 +120,27 @@ fn hear(bar: &ProgressBar, json: bool, event: &Event) {
     }
     let say = |text: String| bar.suspend(|| eprintln!("{text}"));
     match event {
-        Event::Progress { output, done, total } => {
+        Event::Progress {
+            output,
+            done,
+            total,
+        } => {
             bar.set_length(*total as u64);
             bar.set_position(*done as u64);
             bar.set_message(output.clone());
         }
-        Event::MapWritten { channel, path, not_finite, clamped, .. } if !json => {
+        Event::MapWritten {
+            channel,
+            path,
+            not_finite,
+            clamped,
+            ..
+        } if !json => {
             if *not_finite > 0 {
-                say(format!("warning: {not_finite} samples of {} are not finite", path.display()));
+                say(format!(
+                    "warning: {not_finite} samples of {} are not finite",
+                    path.display()
+                ));
             }
             if *clamped > 0 {
                 say(format!(
@@ -132,7 +150,9 @@ fn hear(bar: &ProgressBar, json: bool, event: &Event) {
             }
         }
         Event::StoreFailed { reason } if !json => {
-            say(format!("warning: the store of earlier results cannot be used: {reason}"));
+            say(format!(
+                "warning: the store of earlier results cannot be used: {reason}"
+            ));
         }
         _ => {}
     }
@@ -158,7 +178,11 @@ fn options(arguments: &Arguments) -> Result<Options, String> {
 
 /// The user's cache folder, by the conventions of the system.
 fn default_store() -> Option<PathBuf> {
-    let variable = |name: &str| std::env::var_os(name).filter(|it| !it.is_empty()).map(PathBuf::from);
+    let variable = |name: &str| {
+        std::env::var_os(name)
+            .filter(|it| !it.is_empty())
+            .map(PathBuf::from)
+    };
     let folder = variable("XDG_CACHE_HOME")
         .filter(|folder| folder.is_absolute())
         .or_else(|| variable("LOCALAPPDATA"))
@@ -169,8 +193,12 @@ fn default_store() -> Option<PathBuf> {
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| match text.trim().parse() {
         Ok(side) if (1..=65_536).contains(&side) => Ok(side),
-        _ => Err(format!("expected a whole number from 1 to 65536, found `{text}`")),
+        _ => Err(format!(
+            "expected a whole number from 1 to 65536, found `{text}`"
+        )),
     };
-    let (width, height) = text.split_once(['x', 'X']).ok_or("expected WxH, for example 1024x512")?;
+    let (width, height) = text
+        .split_once(['x', 'X'])
+        .ok_or("expected WxH, for example 1024x512")?;
     Ok([side(width)?, side(height)?])
 }

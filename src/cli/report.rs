@@ -3,9 +3,7 @@
 use super::Exit;
 use std::io::{self, Write};
 use std::path::Path;
-use yosegi::diagnostics::{
-    Code, Diagnostic, render_all, render_all_styled, render_json,
-};
+use yosegi::diagnostics::{Code, Diagnostic, render_all, render_all_styled, render_json};
 use yosegi::engine::RunError;
 use yosegi::graph::{Graph, Settings, load};
 use yosegi::world::Disk;
@@ -53,12 +51,17 @@ pub(super) fn diagnostics(list: &[Diagnostic], json: bool) {
         return;
     }
     if json {
-        list.iter().for_each(|diagnostic| line(&render_json(diagnostic)));
+        list.iter()
+            .for_each(|diagnostic| line(&render_json(diagnostic)));
         return;
     }
     let stderr = anstream::stderr();
     let is_terminal = io::IsTerminal::is_terminal(&io::stderr());
-    let text = if is_terminal { render_all_styled(list) } else { render_all(list) };
+    let text = if is_terminal {
+        render_all_styled(list)
+    } else {
+        render_all(list)
+    };
     // Nobody is left to tell that stderr is closed.
     let _ = writeln!(stderr.lock(), "{}", text.trim_end());
 }

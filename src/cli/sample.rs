@@ -33,10 +33,11 @@ struct Points {
 
 pub(super) fn run(arguments: &Arguments) -> Exit {
     let json = arguments.recipe.json;
-    let graph = match report::load_recipe(&arguments.recipe_path, &arguments.recipe.settings(), json) {
-        Ok(graph) => graph,
-        Err(exit) => return exit,
-    };
+    let graph =
+        match report::load_recipe(&arguments.recipe_path, &arguments.recipe.settings(), json) {
+            Ok(graph) => graph,
+            Err(exit) => return exit,
+        };
     let engine = match engine(arguments) {
         Ok(engine) => engine,
         Err(problem) => {
@@ -81,7 +82,11 @@ fn read_points(path: &Path, fields: &[SampledField]) -> Result<Points, (Exit, St
         .map(str::to_owned)
         .collect();
     let expected = expected_header(fields, &header).map_err(wrong)?;
-    let mut points = Points { header, rows: vec![], places: vec![] };
+    let mut points = Points {
+        header,
+        rows: vec![],
+        places: vec![],
+    };
     for record in reader.records() {
         let record = record.map_err(|error| wrong(error.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -89,7 +94,9 @@ fn read_points(path: &Path, fields: &[SampledField]) -> Result<Points, (Exit, St
         for (axis, cell) in record.iter().enumerate().take(expected) {
             let number: Option<f64> = cell.parse().ok().filter(|it: &f64| it.is_finite());
             place[axis] = number.ok_or_else(|| {
-                wrong(format!("line {line}: expected a finite number, found `{cell}`"))
+                wrong(format!(
+                    "line {line}: expected a finite number, found `{cell}`"
+                ))
             })?;
         }
         points.rows.push(record.iter().map(str::to_owned).collect());
@@ -101,13 +108,20 @@ fn read_points(path: &Path, fields: &[SampledField]) -> Result<Points, (Exit, St
 /// The number of coordinates, if the header fits the domain of the fields.
 fn expected_header(fields: &[SampledField], header: &[String]) -> Result<usize, String> {
     let names: Vec<&str> = header.iter().map(String::as_str).collect();
-    match (common_domain(fields.iter().map(|sampled| &sampled.field)), names.as_slice()) {
+    match (
+        common_domain(fields.iter().map(|sampled| &sampled.field)),
+        names.as_slice(),
+    ) {
         (Domain::Solid | Domain::Everywhere, ["x", "y", "z"]) => Ok(3),
         (Domain::Plane | Domain::Everywhere, ["u", "v"]) => Ok(2),
-        (Domain::Plane, found) => {
-            Err(format!("the node is flat: expected the header u,v, found {}", found.join(",")))
-        }
-        (_, found) => Err(format!("expected the header x,y,z, found {}", found.join(","))),
+        (Domain::Plane, found) => Err(format!(
+            "the node is flat: expected the header u,v, found {}",
+            found.join(",")
+        )),
+        (_, found) => Err(format!(
+            "expected the header x,y,z, found {}",
+            found.join(",")
+        )),
     }
 }
 

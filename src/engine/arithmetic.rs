@@ -16,17 +16,24 @@ pub(super) fn field(
         Arithmetic::Number(number) => Field::constant(*number),
         Arithmetic::Link(link) => field_of(link),
         Arithmetic::Negate(inner) => apply(node, Operation::Negate, vec![operand(inner)]),
-        Arithmetic::Binary(operator, sides) => {
-            apply(node, Operation::Binary(*operator), sides.iter().map(operand).collect())
-        }
-        Arithmetic::Call(function, arguments) => {
-            apply(node, Operation::Call(*function), arguments.iter().map(operand).collect())
-        }
+        Arithmetic::Binary(operator, sides) => apply(
+            node,
+            Operation::Binary(*operator),
+            sides.iter().map(operand).collect(),
+        ),
+        Arithmetic::Call(function, arguments) => apply(
+            node,
+            Operation::Call(*function),
+            arguments.iter().map(operand).collect(),
+        ),
     }
 }
 
 fn apply(node: &Arc<str>, operation: Operation, operands: Vec<Field>) -> Field {
-    let varying = operands.iter().filter(|operand| operand.as_constant().is_none()).count();
+    let varying = operands
+        .iter()
+        .filter(|operand| operand.as_constant().is_none())
+        .count();
     Field::kernel(node, Arc::new(Apply { operation, varying }), operands)
 }
 
@@ -77,7 +84,9 @@ impl Kernel for Apply {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let Block { inputs, outputs, .. } = block;
+        let Block {
+            inputs, outputs, ..
+        } = block;
         let output = &mut outputs[0];
         match self.operation {
             Operation::Negate => one(output, inputs, |a| -a),
@@ -99,7 +108,9 @@ impl Kernel for Apply {
                 three(output, inputs, |a, b, amount| a + amount * (b - a));
             }
             Operation::Call(Function::Luminance) => {
-                three(output, inputs, |r, g, b| crate::colour::luminance([r, g, b]));
+                three(output, inputs, |r, g, b| {
+                    crate::colour::luminance([r, g, b])
+                });
             }
         }
     }
@@ -112,13 +123,21 @@ fn one(output: &mut [f32], inputs: &[InputColumn<'_>], f: impl Fn(f32) -> f32) {
 }
 
 fn two(output: &mut [f32], inputs: &[InputColumn<'_>], f: impl Fn(f32, f32) -> f32) {
-    for ((output, a), b) in output.iter_mut().zip(inputs[0].values).zip(inputs[1].values) {
+    for ((output, a), b) in output
+        .iter_mut()
+        .zip(inputs[0].values)
+        .zip(inputs[1].values)
+    {
         *output = f(*a, *b);
     }
 }
 
 fn three(output: &mut [f32], inputs: &[InputColumn<'_>], f: impl Fn(f32, f32, f32) -> f32) {
-    let columns = inputs[0].values.iter().zip(inputs[1].values).zip(inputs[2].values);
+    let columns = inputs[0]
+        .values
+        .iter()
+        .zip(inputs[1].values)
+        .zip(inputs[2].values);
     for (output, ((a, b), c)) in output.iter_mut().zip(columns) {
         *output = f(*a, *b, *c);
     }

@@ -41,12 +41,17 @@ struct Cell {
 impl Built {
     /// The values of a node, in the order of its outputs.
     pub(super) fn values(&self, node: NodeIndex) -> &[Value] {
-        &self.structure(node).expect("every node of a finished plan is built").values
+        &self
+            .structure(node)
+            .expect("every node of a finished plan is built")
+            .values
     }
 
     /// The content key of one output of a node.
     pub(super) fn key(&self, node: NodeIndex, output: usize) -> Key {
-        self.structure(node).expect("every node of a finished plan is built").keys[output]
+        self.structure(node)
+            .expect("every node of a finished plan is built")
+            .keys[output]
     }
 
     fn structure(&self, node: NodeIndex) -> Option<&Structure> {
@@ -60,11 +65,23 @@ impl Builder<'_> {
     /// # Errors
     /// What is wrong with each node that could not be built; nodes that read it are left out.
     pub(super) fn build(&self, plan: &Plan<'_>) -> Result<Built, RunError> {
-        let built = Built { cells: plan.order.iter().map(|node| (*node, Cell::new(plan, *node))).collect() };
+        let built = Built {
+            cells: plan
+                .order
+                .iter()
+                .map(|node| (*node, Cell::new(plan, *node)))
+                .collect(),
+        };
         let failures = OnceLockList::default();
         rayon::scope(|scope| {
             for node in &plan.order {
-                if plan.graph.nodes.neighbors_directed(*node, Direction::Incoming).next().is_none() {
+                if plan
+                    .graph
+                    .nodes
+                    .neighbors_directed(*node, Direction::Incoming)
+                    .next()
+                    .is_none()
+                {
                     scope.spawn(|scope| self.run(plan, &built, &failures, *node, scope));
                 }
             }
@@ -72,9 +89,16 @@ impl Builder<'_> {
         if self.cancel.is_cancelled() {
             return Err(RunError::Cancelled);
         }
-        let mut failures = failures.0.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut failures = failures
+            .0
+            .into_inner()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         failures.sort_by_key(|failure| failure.label.as_ref().map(|label| label.span.start));
-        if failures.is_empty() { Ok(built) } else { Err(RunError::Nodes(failures)) }
+        if failures.is_empty() {
+            Ok(built)
+        } else {
+            Err(RunError::Nodes(failures))
+        }
     }
 
     fn run<'s>(
@@ -88,15 +112,22 @@ impl Builder<'_> {
         let result = if self.cancel.is_cancelled() {
             None
         } else {
-            self.build_node(plan, built, index).unwrap_or_else(|failure| {
-                failures.push(diagnose(plan, index, failure));
-                None
-            })
+            self.build_node(plan, built, index)
+                .unwrap_or_else(|failure| {
+                    failures.push(diagnose(plan, index, failure));
+                    None
+                })
         };
         let stored = built.cells[&index].result.set(result);
         debug_assert!(stored.is_ok(), "a node is built once");
-        for reader in plan.graph.nodes.neighbors_directed(index, Direction::Outgoing) {
-            let Some(cell) = built.cells.get(&reader) else { continue };
+        for reader in plan
+            .graph
+            .nodes
+            .neighbors_directed(index, Direction::Outgoing)
+        {
+            let Some(cell) = built.cells.get(&reader) else {
+                continue;
+            };
             if cell.waiting.fetch_sub(1, Ordering::AcqRel) == 1 {
                 scope.spawn(move |scope| self.run(plan, built, failures, reader, scope));
             }
@@ -112,9 +143,14 @@ impl Builder<'_> {
     ) -> Result<Option<Structure>, Failure> {
         let node = &plan.graph.nodes[index];
         let resolver = Resolver { plan, built, node };
-        let Some(inputs) = resolver.inputs() else { return Ok(None) };
+        let Some(inputs) = resolver.inputs() else {
+            return Ok(None);
+        };
         let make = || {
-            let build = Build { node: &node.name, seed: plan.graph.seed };
+            let build = Build {
+                node: &node.name,
+                seed: plan.graph.seed,
+            };
             call(|| (node.kind.build)(&Inputs::new(node.kind, &inputs), &build))
         };
         if node.kind.is_structure() {
@@ -135,34 +171,54 @@ impl Builder<'_> {
     ) -> Result<Structure, Failure> {
         let name = node.name.to_string();
         if let Some(structure) = self.memory.structure(&key) {
-            self.listener.hear(Event::StructureReused { node: name, from: From::Memory });
+            self.listener.hear(Event::StructureReused {
+                node: name,
+                from: From::Memory,
+            });
             return Ok(structure);
         }
         let start = Instant::now();
         let stored = self.store.and_then(|store| store.get("structure", &key));
         if let Some(structure) = stored.and_then(|bytes| content::decode(node.kind, &bytes)) {
-            self.memory.put_structure(key, structure.clone(), 4096, nanoseconds(start));
-            self.listener.hear(Event::StructureReused { node: name, from: From::Disk });
+            self.memory
+                .put_structure(key, structure.clone(), 4096, nanoseconds(start));
+            self.listener.hear(Event::StructureReused {
+                node: name,
+                from: From::Disk,
+            });
             return Ok(structure);
         }
         let values = make()?;
         let bytes = content::encode(&values);
         let keys = values.iter().map(content::key).collect();
         let structure = Structure { values, keys };
-        self.memory.put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
+        self.memory
+            .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
         if let Some(Err(error)) = self.store.map(|store| store.put("structure", &key, &bytes)) {
-            self.listener.hear(Event::StoreFailed { reason: error.to_string() });
+            self.listener.hear(Event::StoreFailed {
+                reason: error.to_string(),
+            });
         }
         let milliseconds = nanoseconds(start) * 1e-6;
-        self.listener.hear(Event::StructureBuilt { node: name, milliseconds });
+        self.listener.hear(Event::StructureBuilt {
+            node: name,
+            milliseconds,
+        });
         Ok(structure)
     }
 }
 
 impl Cell {
     fn new(plan: &Plan<'_>, node: NodeIndex) -> Cell {
-        let waiting = plan.graph.nodes.edges_directed(node, Direction::Incoming).count();
-        Cell { waiting: AtomicUsize::new(waiting), result: OnceLock::new() }
+        let waiting = plan
+            .graph
+            .nodes
+            .edges_directed(node, Direction::Incoming)
+            .count();
+        Cell {
+            waiting: AtomicUsize::new(waiting),
+            result: OnceLock::new(),
+        }
     }
 }
 
@@ -171,7 +227,10 @@ struct OnceLockList(std::sync::Mutex<Vec<Diagnostic>>);
 
 impl OnceLockList {
     fn push(&self, diagnostic: Diagnostic) {
-        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(diagnostic);
+        self.0
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .push(diagnostic);
     }
 }
 
@@ -185,7 +244,11 @@ struct Resolver<'a> {
 impl Resolver<'_> {
     /// The inputs in order; `None` if something they link to has failed.
     fn inputs(&self) -> Option<Vec<Option<Value>>> {
-        self.node.inputs.iter().map(|binding| self.value(&binding.source)).collect()
+        self.node
+            .inputs
+            .iter()
+            .map(|binding| self.value(&binding.source))
+            .collect()
     }
 
     /// `None` if a link leads to a failed node, `Some(None)` for an absent input.
@@ -202,7 +265,11 @@ impl Resolver<'_> {
                     return None;
                 }
                 let linked = |link: &Link| self.field(link);
-                Some(Value::Field(arithmetic::field(&self.node.name, expression, &linked)))
+                Some(Value::Field(arithmetic::field(
+                    &self.node.name,
+                    expression,
+                    &linked,
+                )))
             }
             Source::Channels(channels) => {
                 let mut values = vec![];
@@ -247,9 +314,9 @@ fn links_are_built(arithmetic: &crate::graph::Arithmetic, built: &Built) -> bool
         Arithmetic::Link(link) => built.structure(link.node).is_some(),
         Arithmetic::Negate(inner) => links_are_built(inner, built),
         Arithmetic::Binary(_, sides) => sides.iter().all(|side| links_are_built(side, built)),
-        Arithmetic::Call(_, arguments) => {
-            arguments.iter().all(|argument| links_are_built(argument, built))
-        }
+        Arithmetic::Call(_, arguments) => arguments
+            .iter()
+            .all(|argument| links_are_built(argument, built)),
     }
 }
 

@@ -66,12 +66,12 @@ pub(super) fn decode(kind: &Kind, bytes: &[u8]) -> Option<Structure> {
         return None;
     }
     let decode = |(output, bytes): (&crate::node::Output, &Vec<u8>)| match output.value_type {
-        Type::Skeleton => {
-            postcard::from_bytes(bytes).ok().map(|value| Value::Skeleton(Arc::new(value)))
-        }
-        Type::ColourPattern => {
-            postcard::from_bytes(bytes).ok().map(|value| Value::ColourPattern(Arc::new(value)))
-        }
+        Type::Skeleton => postcard::from_bytes(bytes)
+            .ok()
+            .map(|value| Value::Skeleton(Arc::new(value))),
+        Type::ColourPattern => postcard::from_bytes(bytes)
+            .ok()
+            .map(|value| Value::ColourPattern(Arc::new(value))),
         _ => None,
     };
     let values: Option<Vec<Value>> = kind.outputs.iter().zip(&parts).map(decode).collect();

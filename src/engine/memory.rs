@@ -53,7 +53,10 @@ enum Content {
 impl Memory {
     /// Remembers up to `budget` bytes; 0 remembers nothing.
     pub(super) fn new(budget: usize) -> Memory {
-        Memory { budget, state: Mutex::default() }
+        Memory {
+            budget,
+            state: Mutex::default(),
+        }
     }
 
     /// Whether anything can be remembered.
@@ -73,7 +76,13 @@ impl Memory {
         }
     }
 
-    pub(super) fn put_structure(&self, key: Key, structure: Structure, bytes: usize, nanoseconds: f64) {
+    pub(super) fn put_structure(
+        &self,
+        key: Key,
+        structure: Structure,
+        bytes: usize,
+        nanoseconds: f64,
+    ) {
         self.put_content(key, Content::Structure(structure), bytes, nanoseconds);
     }
 
@@ -118,14 +127,24 @@ impl State {
     fn insert(&mut self, key: Key, content: Content, bytes: usize, worth: u64, budget: usize) {
         self.remove(&key);
         while self.bytes + bytes > budget {
-            let Some((rank, oldest)) = self.ranks.first().copied() else { break };
+            let Some((rank, oldest)) = self.ranks.first().copied() else {
+                break;
+            };
             self.clock = rank;
             self.remove(&oldest);
         }
         let rank = self.clock + worth;
         self.ranks.insert((rank, key));
         self.bytes += bytes;
-        self.entries.insert(key, Entry { content, bytes, worth, rank });
+        self.entries.insert(
+            key,
+            Entry {
+                content,
+                bytes,
+                worth,
+                rank,
+            },
+        );
     }
 
     fn remove(&mut self, key: &Key) {
@@ -156,7 +175,10 @@ mod tests {
         memory.put(key("middle"), columns(3.0), 1e5);
         memory.put(key("new"), columns(4.0), 1e5);
         assert!(memory.get(&key("cheap")).is_none());
-        assert_eq!(memory.get(&key("dear")).map(|columns| columns[0][0]), Some(1.0));
+        assert_eq!(
+            memory.get(&key("dear")).map(|columns| columns[0][0]),
+            Some(1.0)
+        );
         assert!(memory.bytes() <= 3 * 1024);
     }
 

@@ -103,7 +103,10 @@ impl RunError {
     }
 
     fn not_written(error: &io::Error) -> RunError {
-        RunError::Files(vec![Diagnostic::error(Code::OutputNotWritten, error.to_string())])
+        RunError::Files(vec![Diagnostic::error(
+            Code::OutputNotWritten,
+            error.to_string(),
+        )])
     }
 }
 
@@ -117,8 +120,17 @@ impl Engine {
             .num_threads(options.threads.unwrap_or(0))
             .build()
             .map_err(io::Error::other)?;
-        let store = options.store.clone().map(|folder| Store::new(Arc::clone(&world), folder));
-        Ok(Engine { memory: Memory::new(options.memory), world, options, store, threads })
+        let store = options
+            .store
+            .clone()
+            .map(|folder| Store::new(Arc::clone(&world), folder));
+        Ok(Engine {
+            memory: Memory::new(options.memory),
+            world,
+            options,
+            store,
+            threads,
+        })
     }
 
     /// Bytes of structures and columns that the engine remembers.
@@ -132,8 +144,12 @@ impl Engine {
         listener: &dyn Listener,
         cancel: &Cancel,
     ) -> Result<Built, RunError> {
-        let builder =
-            Builder { memory: &self.memory, store: self.store.as_ref(), listener, cancel };
+        let builder = Builder {
+            memory: &self.memory,
+            store: self.store.as_ref(),
+            listener,
+            cancel,
+        };
         builder.build(plan)
     }
 
@@ -144,7 +160,10 @@ impl Engine {
     fn context(&self) -> RunContext<'_> {
         RunContext {
             level: self.options.level.unwrap_or_else(Level::new),
-            cache: self.memory.is_enabled().then_some(&self.memory as &dyn ColumnCache),
+            cache: self
+                .memory
+                .is_enabled()
+                .then_some(&self.memory as &dyn ColumnCache),
             filtering: self.options.filtering,
         }
     }

@@ -65,7 +65,11 @@ impl Painter<'_> {
         for window in windows {
             let (painted, written) = rayon::join(
                 || self.paint_window(&program, &encoders, window, &scratches),
-                || waiting.take().map_or(Ok(0), |window| tally.write(sheets, window)),
+                || {
+                    waiting
+                        .take()
+                        .map_or(Ok(0), |window| tally.write(sheets, window))
+                },
             );
             self.progress(written?, &mut tally, total);
             waiting = Some(painted.ok_or(PaintError::Cancelled)?);
@@ -85,12 +89,18 @@ impl Painter<'_> {
                 corner: [x, y],
                 size: [side.min(width - x), side.min(height - y)],
             };
-            (0..width).step_by(side as usize).map(tile).collect::<Vec<_>>()
+            (0..width)
+                .step_by(side as usize)
+                .map(tile)
+                .collect::<Vec<_>>()
         };
         let bands: Vec<Vec<Tile>> = (0..height).step_by(side as usize).map(band).collect();
         let wanted = 4 * rayon::current_num_threads();
         let across = width.div_ceil(side) as usize;
-        bands.chunks(wanted.div_ceil(across)).map(<[_]>::to_vec).collect()
+        bands
+            .chunks(wanted.div_ceil(across))
+            .map(<[_]>::to_vec)
+            .collect()
     }
 
     /// `None` if the run was cancelled.
@@ -126,9 +136,21 @@ impl Painter<'_> {
         let margin = program.margin();
         let grid = PixelGrid::tile(tile.corner, tile.size, margin);
         let stride = grid.width;
-        program.run(&Samples::Grid { target: self.target, grid }, scratch, &self.context);
+        program.run(
+            &Samples::Grid {
+                target: self.target,
+                grid,
+            },
+            scratch,
+            &self.context,
+        );
         let [width, height] = tile.size.map(|side| side as usize);
-        let mut painted = Painted { tile, rows: vec![], faults: vec![], work: scratch.take_work() };
+        let mut painted = Painted {
+            tile,
+            rows: vec![],
+            faults: vec![],
+            work: scratch.take_work(),
+        };
         for (output, encoder) in encoders.iter().enumerate() {
             let row_bytes = width * encoder.pixel_bytes();
             let mut rows = vec![0; row_bytes * height];
@@ -136,8 +158,10 @@ impl Painter<'_> {
             for (row, bytes) in rows.chunks_exact_mut(row_bytes).enumerate() {
                 let start = (row + margin) * stride + margin;
                 let columns = program.columns(scratch, output);
-                let columns: Vec<&[f32]> =
-                    columns.iter().map(|column| &column[start..start + width]).collect();
+                let columns: Vec<&[f32]> = columns
+                    .iter()
+                    .map(|column| &column[start..start + width])
+                    .collect();
                 faults += encoder.encode(&columns, bytes);
             }
             painted.rows.push(rows);
@@ -150,7 +174,11 @@ impl Painter<'_> {
         tally.tiles += written;
         if written > 0 {
             let output = self.output.to_owned();
-            self.listener.hear(Event::Progress { output, done: tally.tiles, total });
+            self.listener.hear(Event::Progress {
+                output,
+                done: tally.tiles,
+                total,
+            });
         }
     }
 }
@@ -187,14 +215,18 @@ struct Tally {
 impl Tally {
     /// Writes the rows of a window into every sheet; gives the number of its tiles.
     fn write(&mut self, sheets: &mut [Sheet], window: Window) -> io::Result<usize> {
-        sheets.par_iter_mut().enumerate().try_for_each(|(index, sheet)| {
-            let mut rows = vec![];
-            for band in &window {
-                append_rows(&mut rows, band, index, sheet.encoder.pixel_bytes());
-                band.iter().for_each(|painted| sheet.faults += painted.faults[index]);
-            }
-            sheet.writer.write_rows(&rows)
-        })?;
+        sheets
+            .par_iter_mut()
+            .enumerate()
+            .try_for_each(|(index, sheet)| {
+                let mut rows = vec![];
+                for band in &window {
+                    append_rows(&mut rows, band, index, sheet.encoder.pixel_bytes());
+                    band.iter()
+                        .for_each(|painted| sheet.faults += painted.faults[index]);
+                }
+                sheet.writer.write_rows(&rows)
+            })?;
         for painted in window.iter().flatten() {
             for (node, work) in &painted.work {
                 let [computed, reused] = self.work.entry(Arc::clone(node)).or_default();
@@ -208,14 +240,21 @@ impl Tally {
     fn report(self, output: &str, listener: &dyn Listener) {
         for (node, [computed, reused]) in self.work {
             let (output, node) = (output.to_owned(), node.to_string());
-            listener.hear(Event::FieldTiles { output, node, computed, reused });
+            listener.hear(Event::FieldTiles {
+                output,
+                node,
+                computed,
+                reused,
+            });
         }
     }
 }
 
 /// Joins the tiles of a band into whole rows.
 fn append_rows(rows: &mut Vec<u8>, band: &[Painted], sheet: usize, pixel_bytes: usize) {
-    let height = band.first().map_or(0, |painted| painted.tile.size[1] as usize);
+    let height = band
+        .first()
+        .map_or(0, |painted| painted.tile.size[1] as usize);
     for row in 0..height {
         for painted in band {
             let length = painted.tile.size[0] as usize * pixel_bytes;

@@ -32,7 +32,12 @@ impl<'g> Plan<'g> {
     ) -> Result<Plan<'g>, RunError> {
         let order = ancestors(graph, wanted);
         let files = read_files(graph, &order, world)?;
-        let mut plan = Plan { graph, order, files, keys: HashMap::new() };
+        let mut plan = Plan {
+            graph,
+            order,
+            files,
+            keys: HashMap::new(),
+        };
         for index in plan.order.clone() {
             let key = plan.node_key(index);
             plan.keys.insert(index, key);
@@ -44,7 +49,9 @@ impl<'g> Plan<'g> {
         let node = &self.graph.nodes[index];
         let mut key = KeyHasher::new("node", node.kind.version);
         key.text(node.kind.name);
-        node.inputs.iter().for_each(|input| self.add_source(&mut key, &input.source));
+        node.inputs
+            .iter()
+            .for_each(|input| self.add_source(&mut key, &input.source));
         key.finish()
     }
 
@@ -58,7 +65,9 @@ impl<'g> Plan<'g> {
                 key.text("file").bytes(&self.files[path].bytes);
             }
             Source::Link(link) => {
-                key.text("link").key(self.keys[&link.node]).whole(link.output as i64);
+                key.text("link")
+                    .key(self.keys[&link.node])
+                    .whole(link.output as i64);
             }
             Source::Arithmetic(arithmetic) => self.add_arithmetic(key, arithmetic),
             Source::Channels(channels) => {
@@ -82,8 +91,12 @@ impl<'g> Plan<'g> {
                 sides.iter().for_each(|side| self.add_arithmetic(key, side));
             }
             Arithmetic::Call(function, arguments) => {
-                key.text("call").whole(*function as i64).whole(arguments.len() as i64);
-                arguments.iter().for_each(|argument| self.add_arithmetic(key, argument));
+                key.text("call")
+                    .whole(*function as i64)
+                    .whole(arguments.len() as i64);
+                arguments
+                    .iter()
+                    .for_each(|argument| self.add_arithmetic(key, argument));
             }
         }
     }
@@ -116,13 +129,18 @@ fn read_files(
     for index in order {
         let node = &graph.nodes[*index];
         for (input, binding) in node.kind.inputs.iter().zip(&node.inputs) {
-            let Source::File(path) = &binding.source else { continue };
+            let Source::File(path) = &binding.source else {
+                continue;
+            };
             if files.contains_key(path) {
                 continue;
             }
             match read_beside(world, folder, path) {
                 Ok(bytes) => {
-                    let contents = FileContents { path: path.clone(), bytes: bytes.into() };
+                    let contents = FileContents {
+                        path: path.clone(),
+                        bytes: bytes.into(),
+                    };
                     files.insert(path.clone(), contents);
                 }
                 Err(error) => errors.push(
@@ -130,7 +148,11 @@ fn read_files(
                         Code::FileNotRead,
                         format!("cannot read `{}`: {error}", path.display()),
                     )
-                    .at(&graph.source, binding.span.clone(), format!("named by `{}`", input.name))
+                    .at(
+                        &graph.source,
+                        binding.span.clone(),
+                        format!("named by `{}`", input.name),
+                    )
                     .in_node(&*node.name)
                     .hint(format!(
                         "files are looked for in `{0}`, in `{0}/assets` and in `{0}/../assets`",
@@ -140,13 +162,21 @@ fn read_files(
             }
         }
     }
-    if errors.is_empty() { Ok(files) } else { Err(RunError::Files(errors)) }
+    if errors.is_empty() {
+        Ok(files)
+    } else {
+        Err(RunError::Files(errors))
+    }
 }
 
 /// Reads a file that a recipe names: beside it, from the assets in its folder, or from those beside its
 /// folder, whichever comes first.
 fn read_beside(world: &dyn World, folder: &Path, path: &Path) -> io::Result<Vec<u8>> {
-    let places = [folder.join(path), folder.join("assets").join(path), folder.join("../assets").join(path)];
+    let places = [
+        folder.join(path),
+        folder.join("assets").join(path),
+        folder.join("../assets").join(path),
+    ];
     let mut missing = io::Error::from(io::ErrorKind::NotFound);
     for place in places {
         match world.read(&place) {
@@ -159,5 +189,9 @@ fn read_beside(world: &dyn World, folder: &Path, path: &Path) -> io::Result<Vec<
 
 /// The folder as a person would write it.
 fn shown(folder: &Path) -> String {
-    if folder.as_os_str().is_empty() { ".".to_owned() } else { folder.display().to_string() }
+    if folder.as_os_str().is_empty() {
+        ".".to_owned()
+    } else {
+        folder.display().to_string()
+    }
 }

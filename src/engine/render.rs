@@ -77,7 +77,12 @@ impl Engine {
         let mut rendered = vec![];
         let mut open = vec![];
         for index in wanted {
-            let output = Output { engine: self, request, plan: &plan, index };
+            let output = Output {
+                engine: self,
+                request,
+                plan: &plan,
+                index,
+            };
             match output.known_maps() {
                 Some(maps) => rendered.extend(output.announce(maps)),
                 None => open.push(output),
@@ -106,14 +111,24 @@ fn chosen_outputs(request: &Render<'_>) -> Result<Vec<NodeIndex>, RunError> {
     }
     let name_of = |index: &NodeIndex| &*graph.nodes[*index].name;
     let find = |name: &String| {
-        graph.outputs.iter().copied().find(|index| name_of(index) == name).ok_or_else(|| {
-            Diagnostic::error(Code::NoOutput, format!("the recipe has no output `{name}`"))
-                .nearest(nearest(name, graph.outputs.iter().map(name_of)))
-                .hint(format!(
-                    "its outputs are {}",
-                    graph.outputs.iter().map(name_of).collect::<Vec<_>>().join(", ")
-                ))
-        })
+        graph
+            .outputs
+            .iter()
+            .copied()
+            .find(|index| name_of(index) == name)
+            .ok_or_else(|| {
+                Diagnostic::error(Code::NoOutput, format!("the recipe has no output `{name}`"))
+                    .nearest(nearest(name, graph.outputs.iter().map(name_of)))
+                    .hint(format!(
+                        "its outputs are {}",
+                        graph
+                            .outputs
+                            .iter()
+                            .map(name_of)
+                            .collect::<Vec<_>>()
+                            .join(", ")
+                    ))
+            })
     };
     request
         .only
@@ -152,7 +167,9 @@ impl Output<'_> {
         let store = self.engine.store.as_ref()?;
         let bytes = store.get("plan", &self.plan_key())?;
         let maps: Vec<WantedMap> = postcard::from_bytes(&bytes).ok()?;
-        maps.iter().all(|map| self.in_place(store, map)).then_some(maps)
+        maps.iter()
+            .all(|map| self.in_place(store, map))
+            .then_some(maps)
     }
 
     fn path(&self, map: &WantedMap) -> PathBuf {
@@ -161,16 +178,26 @@ impl Output<'_> {
 
     /// Whether the file is there as it should be, restored from the store if need be.
     fn in_place(&self, store: &Store, map: &WantedMap) -> bool {
-        let Some(record) = store.map(&map.key) else { return false };
+        let Some(record) = store.map(&map.key) else {
+            return false;
+        };
         let path = self.path(map);
         let (output, channel) = (self.name().to_owned(), map.channel.clone());
         if store.matches(&record, &map.key, &path) {
-            self.request.listener.hear(Event::MapUpToDate { output, channel, path });
+            self.request.listener.hear(Event::MapUpToDate {
+                output,
+                channel,
+                path,
+            });
             return true;
         }
         let restored = store.restore(&record, &path);
         if restored {
-            self.request.listener.hear(Event::MapRestored { output, channel, path });
+            self.request.listener.hear(Event::MapRestored {
+                output,
+                channel,
+                path,
+            });
         }
         restored
     }
@@ -190,19 +217,26 @@ impl Output<'_> {
             self.write_maps(maps, &target, &missing)?;
         }
         self.remember(&wanted, &missing);
-        let (output, milliseconds) =
-            (self.name().to_owned(), start.elapsed().as_secs_f64() * 1e3);
-        self.request.listener.hear(Event::OutputDone { output, milliseconds });
+        let (output, milliseconds) = (self.name().to_owned(), start.elapsed().as_secs_f64() * 1e3);
+        self.request.listener.hear(Event::OutputDone {
+            output,
+            milliseconds,
+        });
         Ok(self.announce(wanted))
     }
 
     fn found(&self, map: &WantedMap) -> bool {
-        self.engine.store.as_ref().is_some_and(|store| self.in_place(store, map))
+        self.engine
+            .store
+            .as_ref()
+            .is_some_and(|store| self.in_place(store, map))
     }
 
     fn check_size(&self, [width, height]: [u32; 2]) -> Result<(), RunError> {
-        let (found, limit) =
-            (u64::from(width) * u64::from(height), self.engine.options.largest_output);
+        let (found, limit) = (
+            u64::from(width) * u64::from(height),
+            self.engine.options.largest_output,
+        );
         if found <= limit {
             return Ok(());
         }
@@ -213,7 +247,9 @@ impl Output<'_> {
                 .at(&self.request.graph.source, node.span.clone(), "this output")
                 .in_node(&*node.name)
                 .expected(format!("at most {limit} pixels"), format!("{found} pixels"))
-                .hint(format!("lower the resolution, or allow it with `--max-pixels {found}`")),
+                .hint(format!(
+                    "lower the resolution, or allow it with `--max-pixels {found}`"
+                )),
         ]))
     }
 
@@ -221,15 +257,27 @@ impl Output<'_> {
         let describe = |channel: &String| {
             let (field, kind) = self.field(maps, channel);
             let mut key = KeyHasher::new("map", 1);
-            key.key(field.key()).key(target.key()).text(maps.format.name()).text(channel);
+            key.key(field.key())
+                .key(target.key())
+                .text(maps.format.name())
+                .text(channel);
             key.whole(i64::from(self.engine.options.filtering));
             key.whole(kind.samples() as i64);
-            maps.ranges.get(channel).iter().copied().flatten().for_each(|end| {
-                key.number(*end);
-            });
+            maps.ranges
+                .get(channel)
+                .iter()
+                .copied()
+                .flatten()
+                .for_each(|end| {
+                    key.number(*end);
+                });
             let extension = maps.format.extension();
             let file_name = format!("{}_{channel}.{extension}", self.name());
-            WantedMap { channel: channel.clone(), file_name, key: key.finish() }
+            WantedMap {
+                channel: channel.clone(),
+                file_name,
+                key: key.finish(),
+            }
         };
         maps.channels.iter().map(describe).collect()
     }
@@ -238,10 +286,17 @@ impl Output<'_> {
     fn field(&self, maps: &Maps, channel: &str) -> (Field, MapKind) {
         if channel == "normal" {
             let node: Arc<str> = self.name().into();
-            return (normal_from_height(&node, &maps.material.channels["height"]), MapKind::Normal);
+            return (
+                normal_from_height(&node, &maps.material.channels["height"]),
+                MapKind::Normal,
+            );
         }
         let field = maps.material.channels[channel].clone();
-        let kind = if field.width() == 3 { MapKind::Colour } else { MapKind::Number };
+        let kind = if field.width() == 3 {
+            MapKind::Colour
+        } else {
+            MapKind::Number
+        };
         (field, kind)
     }
 
@@ -251,8 +306,10 @@ impl Output<'_> {
         target: &FlatPiece,
         missing: &[&WantedMap],
     ) -> Result<(), RunError> {
-        let sheets: io::Result<Vec<Sheet>> =
-            missing.iter().map(|map| self.sheet(maps, target, map)).collect();
+        let sheets: io::Result<Vec<Sheet>> = missing
+            .iter()
+            .map(|map| self.sheet(maps, target, map))
+            .collect();
         let mut sheets = sheets.map_err(|error| RunError::not_written(&error))?;
         let painter = Painter {
             output: self.name(),
@@ -264,7 +321,10 @@ impl Output<'_> {
         };
         painter.paint(&mut sheets)?;
         for (sheet, map) in sheets.into_iter().zip(missing) {
-            sheet.writer.finish().map_err(|error| RunError::not_written(&error))?;
+            sheet
+                .writer
+                .finish()
+                .map_err(|error| RunError::not_written(&error))?;
             self.request.listener.hear(Event::MapWritten {
                 output: self.name().to_owned(),
                 channel: map.channel.clone(),
@@ -297,14 +357,18 @@ impl Output<'_> {
 
     /// Tells the store what was written, and which maps the plan leads to.
     fn remember(&self, wanted: &[WantedMap], written: &[&WantedMap]) {
-        let Some(store) = &self.engine.store else { return };
+        let Some(store) = &self.engine.store else {
+            return;
+        };
         let stored = written
             .iter()
             .try_for_each(|map| store.put_map(&map.key, &self.path(map)))
             .and_then(|()| postcard::to_stdvec(wanted).map_err(io::Error::other))
             .and_then(|bytes| store.put("plan", &self.plan_key(), &bytes));
         if let Err(error) = stored {
-            self.request.listener.hear(Event::StoreFailed { reason: error.to_string() });
+            self.request.listener.hear(Event::StoreFailed {
+                reason: error.to_string(),
+            });
         }
     }
 

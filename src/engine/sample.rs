@@ -32,18 +32,25 @@ impl Engine {
         name: &str,
         listener: &dyn Listener,
     ) -> Result<Vec<SampledField>, RunError> {
-        let (node, part) = name.split_once('.').map_or((name, None), |(node, part)| (node, Some(part)));
+        let (node, part) = name
+            .split_once('.')
+            .map_or((name, None), |(node, part)| (node, Some(part)));
         let index = find(graph, node)?;
         let plan = self.plan(graph, &[index])?;
-        let built =
-            self.threads.install(|| self.build(&plan, listener, &Cancel::new()))?;
+        let built = self
+            .threads
+            .install(|| self.build(&plan, listener, &Cancel::new()))?;
         let fields = fields_of(graph, index, built.values(index));
         let chosen: Vec<SampledField> = fields
             .iter()
             .filter(|(name, _)| part.is_none_or(|part| part == name))
             .map(|(_, field)| field.clone())
             .collect();
-        if chosen.is_empty() { Err(no_fields(graph, index, part, &fields)) } else { Ok(chosen) }
+        if chosen.is_empty() {
+            Err(no_fields(graph, index, part, &fields))
+        } else {
+            Ok(chosen)
+        }
     }
 
     /// The values of fields at `points`: for each field its columns, for each column its values.
@@ -53,8 +60,10 @@ impl Engine {
         let mut scratch = Scratch::default();
         let mut context = self.context();
         context.cache = None;
-        let mut values: Vec<Vec<Vec<f32>>> =
-            plain.iter().map(|field| vec![vec![]; field.width()]).collect();
+        let mut values: Vec<Vec<Vec<f32>>> = plain
+            .iter()
+            .map(|field| vec![vec![]; field.width()])
+            .collect();
         for points in points.chunks(BLOCK) {
             program.run(&Samples::Points(points), &mut scratch, &context);
             for (output, columns) in values.iter_mut().enumerate() {
@@ -71,8 +80,11 @@ fn find(graph: &Graph, name: &str) -> Result<NodeIndex, RunError> {
     graph.by_name.get(name).copied().ok_or_else(|| {
         let names = graph.by_name.keys().map(String::as_str);
         RunError::Request(vec![
-            Diagnostic::error(Code::UnknownNode, format!("the recipe has no node `{name}`"))
-                .nearest(nearest(name, names)),
+            Diagnostic::error(
+                Code::UnknownNode,
+                format!("the recipe has no node `{name}`"),
+            )
+            .nearest(nearest(name, names)),
         ])
     })
 }
@@ -88,7 +100,10 @@ fn fields_of(graph: &Graph, index: NodeIndex, values: &[Value]) -> Vec<(String, 
             }
         } else if let Some(field) = field_of(value) {
             let is_colour = output.value_type == Type::Colour;
-            fields.push((output.name.to_owned(), sampled(output.name, field, is_colour)));
+            fields.push((
+                output.name.to_owned(),
+                sampled(output.name, field, is_colour),
+            ));
         }
     }
     fields
@@ -96,11 +111,19 @@ fn fields_of(graph: &Graph, index: NodeIndex, values: &[Value]) -> Vec<(String, 
 
 fn sampled(name: &str, field: Field, is_colour: bool) -> SampledField {
     let parts: &[&str] = match (field.width(), is_colour) {
-        (1, _) => return SampledField { field, columns: vec![name.to_owned()] },
+        (1, _) => {
+            return SampledField {
+                field,
+                columns: vec![name.to_owned()],
+            };
+        }
         (_, true) => &["r", "g", "b"],
         (_, false) => &["x", "y", "z"],
     };
-    SampledField { field, columns: parts.iter().map(|part| format!("{name}.{part}")).collect() }
+    SampledField {
+        field,
+        columns: parts.iter().map(|part| format!("{name}.{part}")).collect(),
+    }
 }
 
 fn no_fields(
@@ -113,7 +136,10 @@ fn no_fields(
     let names: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
     let message = match part {
         Some(part) if !names.is_empty() => format!("`{}` gives no field `{part}`", node.name),
-        _ => format!("`{}` is a `{}`: it gives no field to sample", node.name, node.kind.name),
+        _ => format!(
+            "`{}` is a `{}`: it gives no field to sample",
+            node.name, node.kind.name
+        ),
     };
     let mut diagnostic = Diagnostic::error(Code::UnknownOutput, message)
         .at(&graph.source, node.span.clone(), "this node")

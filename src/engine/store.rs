@@ -92,7 +92,9 @@ impl Store {
 
     /// Puts a remembered map at `path`; false if its contents are not in the store.
     pub(super) fn restore(&self, record: &MapRecord, path: &Path) -> bool {
-        let Some(contents) = self.get("file", &record.file) else { return false };
+        let Some(contents) = self.get("file", &record.file) else {
+            return false;
+        };
         let write = || {
             let mut file = self.world.create(path)?;
             file.write_all(&contents)?;

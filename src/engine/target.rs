@@ -35,8 +35,7 @@ impl Target for FlatPiece {
     }
 
     fn write_row(&self, x: f64, y: f64, step: f64, [u, v, w]: [&mut [f32]; 3]) {
-        let [across, down] =
-            [0, 1].map(|axis| self.size[axis] / f64::from(self.pixels[axis]));
+        let [across, down] = [0, 1].map(|axis| self.size[axis] / f64::from(self.pixels[axis]));
         for (index, u) in (0i32..).zip(u) {
             *u = ((x + f64::from(index) * step) * across) as f32;
         }

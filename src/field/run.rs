@@ -124,7 +124,10 @@ impl Program {
 
     /// All columns of output `output` after a run.
     pub fn columns<'a>(&self, scratch: &'a Scratch, output: usize) -> Vec<&'a [f32]> {
-        self.outputs[output].iter().map(|slot| scratch.column(*slot)).collect()
+        self.outputs[output]
+            .iter()
+            .map(|slot| scratch.column(*slot))
+            .collect()
     }
 
     /// Looks up the columns that a cache may hold.
