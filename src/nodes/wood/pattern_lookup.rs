@@ -155,8 +155,8 @@ impl Lookup {
 /// smaller one. Where the smaller one counts, it is integrated at its two Gauss points (exact up to cubics);
 /// elsewhere one box of the same variance does.
 struct Boxes {
-    first: [f32; BLOCK],
-    second: [f32; BLOCK],
+    first: [f64; BLOCK],
+    second: [f64; BLOCK],
     width: [f32; BLOCK],
     /// Whether first and second differ anywhere in the block.
     are_two: bool,
@@ -166,18 +166,19 @@ struct Boxes {
 const SKEWED: f32 = 0.2;
 
 /// Distance of the Gauss points from the middle of a box of width 1.
-const GAUSS: f32 = 0.288_675_13;
+const GAUSS: f64 = 0.288_675_134_594_812_9;
 
 impl Boxes {
     #[inline(always)]
     fn new(times: &[f32; BLOCK], [across, along]: [[f32; BLOCK]; 2]) -> Boxes {
+        let times = times.map(f64::from);
         let mut boxes =
-            Boxes { first: *times, second: *times, width: [0.0; BLOCK], are_two: false };
+            Boxes { first: times, second: times, width: [0.0; BLOCK], are_two: false };
         for index in 0..BLOCK {
             let (across, along) = (across[index].abs(), along[index].abs());
             let (large, small) = if across > along { (across, along) } else { (along, across) };
             let is_skewed = small > SKEWED * large;
-            let apart = if is_skewed { GAUSS * small } else { 0.0 };
+            let apart = if is_skewed { GAUSS * f64::from(small) } else { 0.0 };
             boxes.width[index] =
                 if is_skewed { large } else { (across * across + along * along).sqrt() };
             boxes.first[index] -= apart;
@@ -201,7 +202,7 @@ impl Mean {
     }
 
     #[inline(always)]
-    fn over(&mut self, lookup: &Lookup, times: &[f32; BLOCK], widths: &[f32; BLOCK]) {
+    fn over(&mut self, lookup: &Lookup, times: &[f64; BLOCK], widths: &[f32; BLOCK]) {
         self.spans.place(&lookup.table, times, widths);
         lookup.table.means(&self.spans, &mut self.means);
         for (lane, last) in lookup.last.iter().enumerate() {

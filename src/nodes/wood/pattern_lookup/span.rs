@@ -72,7 +72,7 @@ impl Spans {
     pub(super) fn place(
         &mut self,
         table: &Table,
-        times: &[f32; BLOCK],
+        times: &[f64; BLOCK],
         widths: &[f32; BLOCK],
     ) {
         if table.repeats {
@@ -86,7 +86,7 @@ impl Spans {
 
     /// Folds spans of `widths` around `times` into a table that repeats.
     #[inline(always)]
-    fn fold(&mut self, table: &Table, times: &[f32; BLOCK], widths: &[f32; BLOCK]) {
+    fn fold(&mut self, table: &Table, times: &[f64; BLOCK], widths: &[f32; BLOCK]) {
         let (years, frequency) = (table.years, table.frequency);
         for index in 0..BLOCK {
             let time = bounded(times[index], years);
@@ -111,7 +111,7 @@ impl Spans {
 
     /// Cuts spans of `widths` around `times` at the end of a table that does not repeat.
     #[inline(always)]
-    fn cut(&mut self, table: &Table, times: &[f32; BLOCK], widths: &[f32; BLOCK]) {
+    fn cut(&mut self, table: &Table, times: &[f64; BLOCK], widths: &[f32; BLOCK]) {
         let years = table.years;
         for index in 0..BLOCK {
             let time = bounded(times[index], years);
@@ -143,9 +143,8 @@ impl Spans {
 
 /// A time that no arithmetic below can overflow; NaN becomes the earliest.
 #[inline(always)]
-fn bounded(time: f32, years: f64) -> f64 {
+fn bounded(time: f64, years: f64) -> f64 {
     let farthest = FARTHEST * years;
-    let time = f64::from(time);
     let time = if time > -farthest { time } else { -farthest };
     if time < farthest { time } else { farthest }
 }
