@@ -106,7 +106,7 @@ enum Form {
 }
 
 /// Mean size of gradient noise, measured over a million cells.
-const MEAN_SIZE: f32 = 0.2122;
+pub(super) const MEAN_SIZE: f32 = 0.2122;
 
 impl Form {
     /// What an octave becomes where it is averaged away.
