@@ -1,8 +1,10 @@
 //! The kernel of noise: octaves of gradient noise, each filtered by the size of a sample.
 //!
-//! An octave whose features are finer than a sample fades to its mean. With the footprint f, the larger
-//! of the sample's two sides in cells of the octave, its weight is 1 up to f = 1/4, 0 from f = 1, and a
-//! smoothstep between: the share of the noise at the centre of a square that its mean keeps, within 0.1.
+//! An octave whose features are finer than a sample fades to its mean. Its weight is a smoothstep of the
+//! footprint, the larger of the sample's two sides in cells of the octave, from 1 at 0 to 0 at 2.2, or at
+//! 1.5 for the folded forms. That is the regression of the mean over a square on the noise in its centre,
+//! within 0.08 up to a footprint of 1.5. What no weight could make good stays as an error: at most 0.09 of
+//! a deviation of 0.27 for the soft form, 0.11 of 0.31 for the folded ones.
 
 use super::lattice::gradient_noise;
 use super::random::Random;
@@ -105,8 +107,8 @@ enum Form {
     Billow,
 }
 
-/// Mean size of gradient noise, measured over a million cells.
-pub(super) const MEAN_SIZE: f32 = 0.2122;
+/// Mean size of gradient noise, measured over 200 000 points.
+pub(super) const MEAN_SIZE: f32 = 0.2202;
 
 impl Form {
     /// What an octave becomes where it is averaged away.
@@ -115,6 +117,14 @@ impl Form {
             Form::Soft => 0.0,
             Form::Ridged => 1.0 - 2.0 * MEAN_SIZE,
             Form::Billow => 2.0 * MEAN_SIZE - 1.0,
+        }
+    }
+
+    /// The footprint from which on an octave is averaged away, in its cells.
+    fn last_footprint(self) -> f32 {
+        match self {
+            Form::Soft => 2.2,
+            Form::Ridged | Form::Billow => 1.5,
         }
     }
 
@@ -190,9 +200,10 @@ impl NoiseKernel {
         footprint: S::f32s,
     ) -> S::f32s {
         let mean = self.form.mean();
+        let share = footprint * (1.0 / self.form.last_footprint());
         let mut sum = S::f32s::splat(simd, 0.0);
         for (layer, [fineness, strength]) in layers.iter().zip(&self.octaves) {
-            let weight = weight::<S>(footprint * *fineness);
+            let weight = weight::<S>(share * *fineness);
             if weight.simd_gt(0.0).any_true() {
                 let at = [
                     at[0] * *fineness + layer.offset[0],
@@ -207,12 +218,10 @@ impl NoiseKernel {
     }
 }
 
-/// What is left of an octave when it is averaged over a footprint.
+/// What is left of an octave, given its footprint as a share of the last one.
 #[inline(always)]
-fn weight<S: Simd>(footprint: S::f32s) -> S::f32s {
-    let t = ((footprint - 0.25) * (1.0 / 0.75))
-        .max_precise(0.0)
-        .min_precise(1.0);
+fn weight<S: Simd>(share: S::f32s) -> S::f32s {
+    let t = share.min_precise(1.0);
     t * t * (t * 2.0 - 3.0) + 1.0
 }
 
