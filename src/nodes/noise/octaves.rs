@@ -138,9 +138,13 @@ impl Form {
     }
 }
 
-/// One octave of one column.
+/// One octave.
 #[derive(Clone, Copy, Debug)]
-struct Layer {
+struct Octave {
+    /// How many times finer it is than the first.
+    fineness: f32,
+    /// Its share of the sum; all add up to 1.
+    strength: f32,
     /// Where the lattice begins, in cells: no cut of the solid runs along a plane of lattice points.
     offset: [f32; 3],
     seed: u32,
@@ -151,11 +155,10 @@ struct Layer {
 pub(super) struct NoiseKernel {
     /// Cells of the first octave per mm.
     scale: [f32; 3],
-    /// For every octave its fineness relative to the first, and its strength; these add up to 1.
-    octaves: Vec<[f32; 2]>,
+    octaves: Vec<Octave>,
     form: Form,
-    /// For every column its octaves.
-    columns: Vec<Vec<Layer>>,
+    /// 1, or 3 for a vector.
+    columns: usize,
 }
 
 impl NoiseKernel {
@@ -166,7 +169,9 @@ impl NoiseKernel {
             std::iter::successors(Some(1.0), move |power| Some(power * base)).take(count)
         };
         let total: f64 = powers(gain).sum();
-        let mut layer = || Layer {
+        let octave = |(fineness, strength): (f64, f64)| Octave {
+            fineness: fineness as f32,
+            strength: (strength / total) as f32,
             offset: [random.share(), random.share(), random.share()],
             seed: random.bits(),
         };
@@ -175,46 +180,42 @@ impl NoiseKernel {
                 .vector("size")
                 .to_array()
                 .map(|size| (1.0 / size) as f32),
-            octaves: powers(lacunarity)
-                .zip(powers(gain))
-                .map(|(fineness, strength)| [fineness as f32, (strength / total) as f32])
-                .collect(),
+            octaves: powers(lacunarity).zip(powers(gain)).map(octave).collect(),
             form: match inputs.choice("form") {
                 "ridged" => Form::Ridged,
                 "billow" => Form::Billow,
                 _ => Form::Soft,
             },
-            columns: (0..columns)
-                .map(|_| (0..count).map(|_| layer()).collect())
-                .collect(),
+            columns,
         }
     }
 
-    /// The sum of a column's octaves at points given in cells of the first.
+    /// The sums of N columns' octaves at points given in cells of the first.
     #[inline(always)]
-    fn sum<S: Simd>(
+    fn sums<S: Simd, const N: usize>(
         &self,
         simd: S,
-        layers: &[Layer],
         at: [S::f32s; 3],
         footprint: S::f32s,
-    ) -> S::f32s {
+    ) -> [S::f32s; N] {
         let mean = self.form.mean();
         let share = footprint * (1.0 / self.form.last_footprint());
-        let mut sum = S::f32s::splat(simd, 0.0);
-        for (layer, [fineness, strength]) in layers.iter().zip(&self.octaves) {
-            let weight = weight::<S>(share * *fineness);
+        let mut sums = [S::f32s::splat(simd, mean); N];
+        for octave in &self.octaves {
+            let weight = weight::<S>(share * octave.fineness);
             if weight.simd_gt(0.0).any_true() {
                 let at = [
-                    at[0] * *fineness + layer.offset[0],
-                    at[1] * *fineness + layer.offset[1],
-                    at[2] * *fineness + layer.offset[2],
+                    at[0] * octave.fineness + octave.offset[0],
+                    at[1] * octave.fineness + octave.offset[1],
+                    at[2] * octave.fineness + octave.offset[2],
                 ];
-                let noise = self.form.apply::<S>(gradient_noise(simd, at, layer.seed));
-                sum += (noise - mean) * weight * *strength;
+                let noises = gradient_noise::<S, N>(simd, at, octave.seed);
+                for (sum, noise) in sums.iter_mut().zip(noises) {
+                    *sum += (self.form.apply::<S>(noise) - mean) * weight * octave.strength;
+                }
             }
         }
-        sum + mean
+        sums
     }
 }
 
@@ -229,22 +230,25 @@ impl Kernel for NoiseKernel {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("noise").whole(i64::from(VERSION));
         key.whole(self.form as i64)
-            .whole(self.columns.len() as i64)
+            .whole(self.columns as i64)
             .whole(self.octaves.len() as i64);
-        let numbers = self.scale.iter().chain(self.octaves.iter().flatten());
-        numbers.for_each(|number| {
-            key.number(f64::from(*number));
-        });
-        for layer in self.columns.iter().flatten() {
-            key.whole(i64::from(layer.seed));
-            layer.offset.iter().for_each(|offset| {
-                key.number(f64::from(*offset));
+        let mut numbers = |numbers: &[f32]| {
+            numbers.iter().for_each(|number| {
+                key.number(f64::from(*number));
             });
+        };
+        numbers(&self.scale);
+        for octave in &self.octaves {
+            numbers(&[octave.fineness, octave.strength]);
+            numbers(&octave.offset);
         }
+        self.octaves.iter().for_each(|octave| {
+            key.whole(i64::from(octave.seed));
+        });
     }
 
     fn width(&self) -> usize {
-        self.columns.len()
+        self.columns
     }
 
     fn reads_spread(&self, _: usize) -> bool {
@@ -252,18 +256,22 @@ impl Kernel for NoiseKernel {
     }
 
     fn nanoseconds(&self) -> f32 {
-        1.0 + 6.0 * (self.columns.len() * self.octaves.len()) as f32
+        1.0 + (3.0 + self.columns as f32) * self.octaves.len() as f32
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
         let position = [block.inputs[0], block.inputs[1], block.inputs[2]];
         let outputs = &mut *block.outputs;
-        dispatch!(block.level, simd => evaluate_block(simd, self, position, outputs));
+        if self.columns == 1 {
+            dispatch!(block.level, simd => evaluate_block::<_, 1>(simd, self, position, outputs));
+        } else {
+            dispatch!(block.level, simd => evaluate_block::<_, 3>(simd, self, position, outputs));
+        }
     }
 }
 
 #[simd]
-fn evaluate_block<S: Simd>(
+fn evaluate_block<S: Simd, const N: usize>(
     simd: S,
     kernel: &NoiseKernel,
     position: [InputColumn<'_>; 3],
@@ -284,8 +292,8 @@ fn evaluate_block<S: Simd>(
             }
         }
         let footprint = squares[0].max_precise(squares[1]).sqrt();
-        for (layers, output) in kernel.columns.iter().zip(outputs.iter_mut()) {
-            let sum = kernel.sum(simd, layers, at, footprint);
+        let sums = kernel.sums::<S, N>(simd, at, footprint);
+        for (sum, output) in sums.into_iter().zip(outputs.iter_mut()) {
             sum.store_slice(&mut output[range.clone()]);
         }
     }

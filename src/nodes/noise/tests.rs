@@ -85,7 +85,8 @@ fn bits(values: &[f32]) -> Vec<u32> {
 
 #[simd]
 fn lattice_at<S: Simd>(simd: S, at: [f32; 3], seed: u32) -> f32 {
-    gradient_noise(simd, at.map(|part| S::f32s::splat(simd, part)), seed)[0]
+    let [noise] = gradient_noise(simd, at.map(|part| S::f32s::splat(simd, part)), seed);
+    noise[0]
 }
 
 #[test]
