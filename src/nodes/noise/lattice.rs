@@ -92,7 +92,7 @@ fn along_gradients<S: Simd, const N: usize>(
             .simd_lt(4)
             .select(y, (choice & 13).simd_eq(12).select(x, z));
         *product = with_sign::<S>(u, bits << 3) + with_sign::<S>(v, bits << 2);
-        bits = bits << 4;
+        bits <<= 4u32;
     }
     products
 }

@@ -8,96 +8,15 @@
 
 use super::lattice::gradient_noise;
 use super::random::Random;
-use crate::field::{Block, Field, InputColumn, Kernel};
+use crate::field::{Block, InputColumn, Kernel};
 use crate::key::KeyHasher;
-use crate::node::{Build, Input, Inputs, Output};
-use crate::value::{Domain, Type, Unit, Value};
+use crate::node::Inputs;
 use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 /// Raised whenever a result changes.
 pub(super) const VERSION: u32 = 1;
-
-/// Where the maths of the noise kinds comes from.
-pub(super) const SOURCE: &str =
-    "Perlin 2002 (gradients and fade); Musgrave 1994 (octaves, ridges); fading: own construction";
-
-/// The inputs of the noise kinds.
-pub(super) const INPUTS: &[Input] = &[
-    Input::new(
-        "size",
-        Type::Vector(Unit::Millimetre),
-        "Size of the features along x, y and z: a large part stretches them.",
-    )
-    .range(1e-4, 1e6),
-    Input::new(
-        "octaves",
-        Type::Whole,
-        "Layers of noise, each finer than the one before.",
-    )
-    .default("1")
-    .range(1.0, 16.0),
-    Input::number(
-        "gain",
-        Unit::One,
-        "Strength of each octave relative to the one before.",
-    )
-    .default("0.5")
-    .range(0.0, 1.0),
-    Input::number(
-        "lacunarity",
-        Unit::One,
-        "How many times finer each octave is.",
-    )
-    .default("2")
-    .range(1.0, 8.0),
-    Input::new(
-        "form",
-        Type::Choice(&["fbm", "ridged", "billow"]),
-        "Soft around 0, sharp crests at 1, or round bumps between creases at -1.",
-    )
-    .default("fbm"),
-    Input::new(
-        "seed",
-        Type::Whole,
-        "Another number gives other noise; so does the recipe's seed.",
-    )
-    .default("0"),
-];
-
-/// The outputs of the noise kinds, on one domain.
-pub(super) const fn outputs(domain: Domain) -> [Output; 2] {
-    [
-        Output::field(
-            "value",
-            Type::Number(Unit::One),
-            "Between -1 and 1, for `fbm` mostly within 0.5 of its mean 0.",
-        )
-        .on(domain),
-        Output::field(
-            "vector",
-            Type::Vector(Unit::One),
-            "Three values that have nothing to do with each other, nor with `value`.",
-        )
-        .on(domain),
-    ]
-}
-
-/// The outputs of a noise node called `kind` whose points lie in `domain`.
-pub(super) fn build(
-    kind: &str,
-    domain: Domain,
-    inputs: &Inputs<'_>,
-    build: &Build<'_>,
-) -> Vec<Value> {
-    let mut random = Random::new(build.seed, kind, inputs.whole("seed"));
-    let mut columns = |count| {
-        let kernel = NoiseKernel::new(inputs, &mut random, count);
-        Value::Field(build.kernel(kernel, vec![Field::position(domain)]))
-    };
-    vec![columns(1), columns(3)]
-}
 
 /// The shape that is given to every octave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,7 +81,8 @@ pub(super) struct NoiseKernel {
 }
 
 impl NoiseKernel {
-    fn new(inputs: &Inputs<'_>, random: &mut Random, columns: usize) -> NoiseKernel {
+    /// The kernel with 1 or 3 columns that the inputs describe.
+    pub(super) fn new(inputs: &Inputs<'_>, random: &mut Random, columns: usize) -> NoiseKernel {
         let count = inputs.whole("octaves").unsigned_abs() as usize;
         let (gain, lacunarity) = (inputs.number("gain"), inputs.number("lacunarity"));
         let powers = |base: f64| {
@@ -285,10 +205,9 @@ fn evaluate_block<S: Simd, const N: usize>(
         for axis in 0..3 {
             let scale = kernel.scale[axis];
             at[axis] = S::f32s::from_slice(simd, &position[axis].values[range.clone()]) * scale;
-            for side in 0..2 {
-                let spread = &position[axis].spread[side][range.clone()];
-                let spread = S::f32s::from_slice(simd, spread) * scale;
-                squares[side] += spread * spread;
+            for (square, spread) in squares.iter_mut().zip(position[axis].spread) {
+                let spread = S::f32s::from_slice(simd, &spread[range.clone()]) * scale;
+                *square += spread * spread;
             }
         }
         let footprint = squares[0].max_precise(squares[1]).sqrt();
