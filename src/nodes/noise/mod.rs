@@ -1,6 +1,7 @@
 //! Noise: irregularity that looks grown, and what it does to materials.
 
 pub mod distort;
+mod interface;
 mod lattice;
 mod octaves;
 pub mod plane_noise;

@@ -1,6 +1,7 @@
 //! `solid_noise`: irregular values at every point of a solid.
 
-use super::octaves::{self, INPUTS, SOURCE, VERSION};
+use super::interface::{self, INPUTS, SOURCE};
+use super::octaves::VERSION;
 use crate::node::{Build, Failure, Inputs, Kind, Output};
 use crate::value::{Domain, Value};
 
@@ -17,8 +18,8 @@ pub static KIND: Kind = Kind {
     build,
 };
 
-const OUTPUTS: &[Output] = &octaves::outputs(Domain::Solid);
+const OUTPUTS: &[Output] = &interface::outputs(Domain::Solid);
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
-    Ok(octaves::build(KIND.name, Domain::Solid, inputs, build))
+    Ok(interface::build(KIND.name, Domain::Solid, inputs, build))
 }
