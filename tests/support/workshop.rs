@@ -43,8 +43,13 @@ impl Workshop {
 
     /// Another engine on the same files, as another process has it.
     pub(crate) fn another(&self, options: Options) -> Workshop {
+        self.another_on(Arc::new(self.files.clone()), options)
+    }
+
+    /// As [`Workshop::another`], with a world that stands before the files.
+    pub(crate) fn another_on(&self, world: Arc<dyn World>, options: Options) -> Workshop {
         Workshop {
-            engine: Engine::new(Arc::new(self.files.clone()), options).unwrap(),
+            engine: Engine::new(world, options).unwrap(),
             files: self.files.clone(),
             folder: self.folder.clone(),
             size: self.size,
