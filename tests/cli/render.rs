@@ -152,3 +152,18 @@ fn programs_at_the_same_time_share_a_store_and_a_folder() {
         3
     );
 }
+
+#[test]
+fn outputs_come_once_and_in_the_order_of_the_recipe() {
+    let place = Place::new(BOARD);
+    let asked = ["--only", "plain", "--only", "board", "--only", "plain"];
+    let printed = stdout(&place.render(&asked));
+    let expected: Vec<PathBuf> = MAPS
+        .iter()
+        .map(|name| Path::new("out").join(name))
+        .collect();
+    assert_eq!(
+        printed.lines().map(PathBuf::from).collect::<Vec<_>>(),
+        expected
+    );
+}

@@ -128,3 +128,34 @@ fn more_pixels_than_allowed_are_refused_before_anything_is_painted() {
     assert_eq!(wrong[0].code, Code::TooMuch);
     assert!(!run.log().contains("tiles"), "{}", run.log());
 }
+
+#[test]
+fn two_outputs_that_would_write_one_file_are_refused() {
+    let recipe = r##"(
+        nodes: {
+            "wood": material(base_color: "#c8a06e", extras: { "old": 1, "pale_old": 2 }),
+            "piece": slice_cut(of: "wood", cut: end_grain, origin: (0, 0, 0), size: (10, 10)),
+        },
+        outputs: {
+            "board": maps(of: "piece", pixels: (8, 8), format: exr_half, channels: [pale_old]),
+            "board_pale": maps(of: "piece", pixels: (8, 8), format: exr_half, channels: [old]),
+        },
+    )"##;
+    let workshop = without_store();
+    let run = workshop.render(recipe, &[], Cancel::new(), &|_| {});
+    let Err(RunError::Nodes(wrong)) = run.result else {
+        panic!("{:?}", run.result);
+    };
+    assert_eq!(wrong[0].node.as_deref(), Some("board_pale"));
+    assert!(
+        wrong[0].message.contains("`board_pale_old.exr`"),
+        "{}",
+        wrong[0].message
+    );
+    assert_eq!(workshop.maps(), [""; 0]);
+    // Each alone is fine.
+    for name in ["board", "board_pale"] {
+        let alone = workshop.render(recipe, &[name], Cancel::new(), &|_| {});
+        assert!(alone.result.is_ok());
+    }
+}

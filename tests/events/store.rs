@@ -122,3 +122,28 @@ fn exchanged_entries_of_the_store_are_misses() {
     second.run(PAIR);
     assert_eq!(second.map("pale_base_color.png"), right);
 }
+
+#[test]
+fn only_the_map_that_is_lost_is_painted_and_each_is_told_once() {
+    let two = edit(BOARD, "[base_color]", "[base_color, normal]");
+    let workshop = with_store();
+    workshop.run(&two);
+    let right = workshop.map("board_normal.png");
+    // The map is gone from its place and from the store, which remembers only that it was there.
+    for path in workshop.files.paths() {
+        if workshop.files.read(&path).unwrap().ends_with(&right) {
+            workshop.files.insert(path, "");
+        }
+    }
+    let log = workshop.run(&two);
+    let told = log.lines().filter(|line| !line.contains("tiles"));
+    let expected = [
+        "reused tree (memory)",
+        "reused year (memory)",
+        "up to date board_base_color.png",
+        "written board_normal.png",
+    ];
+    assert_eq!(told.collect::<Vec<_>>(), expected);
+    assert_eq!(workshop.map("board_normal.png"), right);
+    assert!(!log.contains("knots"), "{log}");
+}

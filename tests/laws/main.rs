@@ -6,13 +6,14 @@ mod table;
 #[path = "../support/levels.rs"]
 mod levels;
 #[path = "../support/workshop.rs"]
+#[allow(dead_code, reason = "laws need no log of events")]
 mod workshop;
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use workshop::Workshop;
-use yosegi::engine::{Cancel, Options, RunError, SampledField};
+use yosegi::engine::{Cancel, Event, Options, RunError, SampledField};
 use yosegi::graph::{Graph, Settings, Source, load_text};
 use yosegi::node::{Input, Kind, Presence, common_domain};
 use yosegi::nodes::{KINDS, kind};
@@ -221,4 +222,25 @@ fn every_field_has_a_name_for_each_column() {
             );
         }
     }
+}
+
+#[test]
+fn every_recipe_of_the_project_renders() {
+    let mut recipes = 0;
+    for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs")).unwrap() {
+        let path = entry.unwrap().path();
+        let recipe = fs::read_to_string(&path).unwrap();
+        let loaded = load_text(&path, &*recipe, &Settings::default()).unwrap();
+        assert_eq!(loaded.warnings, [], "{}", path.display());
+        let mut workshop = workshop();
+        workshop.size = Some([24, 40]);
+        let run = workshop.render(&recipe, &[], Cancel::new(), &|event| {
+            if let Event::MapWritten { not_finite, .. } = event {
+                assert_eq!(*not_finite, 0, "{}: {event:?}", path.display());
+            }
+        });
+        assert!(run.result.unwrap().len() >= 4, "{}", path.display());
+        recipes += 1;
+    }
+    assert!(recipes >= 3);
 }
