@@ -16,7 +16,7 @@ pub(super) fn file_name(output: &str, channel: &str, format: MapFormat) -> Strin
 /// `board_pale` with the channel `old`.
 pub(super) fn refuse_shared(
     graph: &Graph,
-    files: Vec<(NodeIndex, String)>,
+    files: impl Iterator<Item = (NodeIndex, String)>,
 ) -> Result<(), RunError> {
     let mut owner_of = HashMap::new();
     for (index, file) in files {

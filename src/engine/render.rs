@@ -74,36 +74,27 @@ impl Engine {
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
         let plan = self.plan(request.graph, &wanted)?;
+        let output = |index| Output {
+            engine: self,
+            request,
+            plan: &plan,
+            index,
+        };
+        let outputs: Vec<Output<'_>> = wanted.into_iter().map(output).collect();
+        let known: Vec<Option<Vec<WantedMap>>> = outputs.iter().map(Output::known_maps).collect();
+        let pairs = || outputs.iter().zip(&known);
+        let missing = pairs().filter(|(_, known)| known.is_none());
+        let missing: Vec<NodeIndex> = missing.map(|(output, _)| output.index).collect();
+        let rest = self.plan(request.graph, &missing)?;
+        let built = self.build(&rest, request.listener, &request.cancel)?;
+        let names = pairs().flat_map(|(output, known)| output.file_names(known.as_deref(), &built));
+        files::refuse_shared(request.graph, names)?;
         let mut rendered = vec![];
-        let mut names = vec![];
-        let mut open = vec![];
-        for index in wanted {
-            let output = Output {
-                engine: self,
-                request,
-                plan: &plan,
-                index,
-            };
-            match output.known_maps() {
-                Some(maps) => {
-                    names.extend(maps.iter().map(|map| (index, map.file_name.clone())));
-                    rendered.extend(output.announce(maps));
-                }
-                None => open.push(output),
-            }
-        }
-        if !open.is_empty() {
-            let missing: Vec<NodeIndex> = open.iter().map(|output| output.index).collect();
-            let rest = self.plan(request.graph, &missing)?;
-            let built = self.build(&rest, request.listener, &request.cancel)?;
-            for output in &open {
-                let files = output.file_names(&built).into_iter();
-                names.extend(files.map(|name| (output.index, name)));
-            }
-            files::refuse_shared(request.graph, names)?;
-            for output in &open {
-                rendered.extend(output.paint(&built)?);
-            }
+        for (output, known) in outputs.iter().zip(known) {
+            rendered.extend(match known {
+                Some(maps) => output.announce(maps),
+                None => output.paint(&built)?,
+            });
         }
         Ok(rendered)
     }
@@ -199,10 +190,17 @@ impl Output<'_> {
         maps
     }
 
-    fn file_names(&self, built: &Built) -> Vec<String> {
-        let maps = self.maps(built);
-        let name = |channel: &String| files::file_name(self.name(), channel, maps.format);
-        maps.channels.iter().map(name).collect()
+    /// The files that the output writes or has written, with its own index.
+    fn file_names(&self, known: Option<&[WantedMap]>, built: &Built) -> Vec<(NodeIndex, String)> {
+        let names: Vec<String> = match known {
+            Some(maps) => maps.iter().map(|map| map.file_name.clone()).collect(),
+            None => {
+                let maps = self.maps(built);
+                let name = |channel: &String| files::file_name(self.name(), channel, maps.format);
+                maps.channels.iter().map(name).collect()
+            }
+        };
+        names.into_iter().map(|name| (self.index, name)).collect()
     }
 
     /// Paints what is not in place.

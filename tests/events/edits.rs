@@ -279,3 +279,15 @@ fn equal_nodes_are_computed_once() {
     assert_eq!((count("built tree"), count("reused tree")), (1, 1), "{log}");
     assert_eq!(count(": time"), 1, "{log}");
 }
+
+#[test]
+fn maps_come_in_the_order_of_the_recipe() {
+    let workshop = with_store();
+    workshop.run(PAIR);
+    // The first output is painted, the second is there.
+    let recipe = edit(PAIR, "#e8c99b", "#f8d9ab");
+    let run = workshop.render(&recipe, &[], Cancel::new(), &|_| {});
+    let maps = run.result.unwrap();
+    let outputs: Vec<&str> = maps.iter().map(|map| &*map.output).collect();
+    assert_eq!(outputs, ["pale", "deep"]);
+}

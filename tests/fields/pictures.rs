@@ -7,7 +7,8 @@ fn margins_add_up_where_spreads_are_read_of_spreads() {
     let u = axis(Domain::Plane, 0);
     let square = product().of(&[&u, &u]);
     let [once, twice] = [rise().of(&[&square]), rise().of(&[&rise().of(&[&square])])];
-    let margins = [&square, &once, &twice].map(|field| Program::compile(&[field.clone()]).margin());
+    let margins = [&square, &once, &twice]
+        .map(|field| Program::compile(std::slice::from_ref(field)).margin());
     assert_eq!(margins, [0, 1, 2]);
     let pictures = painted(&[once, twice], [9, 4], 3, &context());
     // u^2 at the pixel centres 0.5, 1.5 ..: slope 2u, and 2 everywhere, without an error at any border.
@@ -70,7 +71,7 @@ fn without_filtering_and_at_points_nothing_is_averaged() {
         ..context()
     };
     assert_eq!(
-        painted(&[edge.clone()], [6, 1], 4, &plain)[0],
+        painted(std::slice::from_ref(&edge), [6, 1], 4, &plain)[0],
         [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
     );
     assert_eq!(
@@ -162,7 +163,7 @@ fn a_cached_kernel_does_not_run_again() {
         cache: Some(&cache),
         ..context()
     };
-    let first = painted(&[field.clone()], [8, 8], 4, &warm);
+    let first = painted(std::slice::from_ref(&field), [8, 8], 4, &warm);
     assert_eq!(counted.calls(), 4);
     assert_eq!(painted(&[field], [8, 8], 4, &warm), first);
     assert_eq!(counted.calls(), 4);
