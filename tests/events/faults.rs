@@ -112,6 +112,13 @@ fn render_failing(first: usize, lasts: bool, right: &[Vec<u8>]) -> usize {
         "operation {first}: {:?}",
         run.result
     );
+    if let Err(error) = &run.result {
+        assert_eq!(
+            error.diagnostics()[0].code,
+            Code::OutputNotWritten,
+            "operation {first}"
+        );
+    }
     let there = failing.maps();
     assert!(
         there.len() == 2 || run.result.is_err(),
