@@ -5,6 +5,7 @@ mod build;
 mod cancel;
 mod content;
 mod event;
+mod files;
 mod memory;
 mod paint;
 mod plan;

@@ -5,7 +5,7 @@ use super::event::{Event, Listener};
 use super::paint::{Painter, Sheet};
 use super::plan::Plan;
 use super::store::Store;
-use super::{Cancel, Engine, FlatPiece, RunError};
+use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::field::{Field, Target};
 use crate::graph::{Graph, no_output};
@@ -74,30 +74,31 @@ impl Engine {
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
         let plan = self.plan(request.graph, &wanted)?;
+        let output = |index| Output {
+            engine: self,
+            request,
+            plan: &plan,
+            index,
+        };
+        let outputs: Vec<Output<'_>> = wanted.into_iter().map(output).collect();
+        let known: Vec<Option<Vec<WantedMap>>> = outputs.iter().map(Output::known_maps).collect();
+        let pairs = || outputs.iter().zip(&known);
+        let missing = pairs().filter(|(_, known)| known.is_none());
+        let missing: Vec<NodeIndex> = missing.map(|(output, _)| output.index).collect();
+        let rest = self.plan(request.graph, &missing)?;
+        let built = self.build(&rest, request.listener, &request.cancel)?;
+        let names = pairs().flat_map(|(output, known)| output.file_names(known.as_deref(), &built));
+        files::refuse_shared(request.graph, names)?;
         let mut rendered = vec![];
-        let mut open = vec![];
-        for index in wanted {
-            let output = Output {
-                engine: self,
-                request,
-                plan: &plan,
-                index,
-            };
-            match output.known_maps() {
-                Some(maps) => rendered.extend(output.announce(maps)),
-                None => open.push(output),
-            }
+        for (output, known) in outputs.iter().zip(known) {
+            rendered.extend(match known {
+                Some(maps) => output.announce(maps),
+                None if built.has(output.index) => output.paint(&built)?,
+                // An output that depends on a failed node does not keep the others from being rendered.
+                None => vec![],
+            });
         }
-        if !open.is_empty() {
-            let missing: Vec<NodeIndex> = open.iter().map(|output| output.index).collect();
-            let rest = self.plan(request.graph, &missing)?;
-            let built = self.build(&rest, request.listener, &request.cancel)?;
-            // An output that depends on a failed node does not keep the others from being rendered.
-            for output in open.iter().filter(|output| built.has(output.index)) {
-                rendered.extend(output.paint(&built)?);
-            }
-            built.complete()?;
-        }
+        built.complete()?;
         Ok(rendered)
     }
 }
@@ -112,32 +113,18 @@ fn chosen_outputs(request: &Render<'_>) -> Result<Vec<NodeIndex>, RunError> {
         return Ok(graph.outputs.clone());
     }
     let name_of = |index: &NodeIndex| &*graph.nodes[*index].name;
-    let find = |name: &String| {
-        graph
-            .outputs
-            .iter()
-            .copied()
-            .find(|index| name_of(index) == name)
-            .ok_or_else(|| {
+    for name in &request.only {
+        if !graph.outputs.iter().any(|index| name_of(index) == name) {
+            let names: Vec<&str> = graph.outputs.iter().map(name_of).collect();
+            return Err(RunError::Request(vec![
                 Diagnostic::error(Code::NoOutput, format!("the recipe has no output `{name}`"))
-                    .nearest(nearest(name, graph.outputs.iter().map(name_of)))
-                    .hint(format!(
-                        "its outputs are {}",
-                        graph
-                            .outputs
-                            .iter()
-                            .map(name_of)
-                            .collect::<Vec<_>>()
-                            .join(", ")
-                    ))
-            })
-    };
-    request
-        .only
-        .iter()
-        .map(find)
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(|diagnostic| RunError::Request(vec![diagnostic]))
+                    .nearest(nearest(name, names.iter().copied()))
+                    .hint(format!("its outputs are {}", names.join(", "))),
+            ]));
+        }
+    }
+    let is_wanted = |index: &NodeIndex| request.only.iter().any(|name| name == name_of(index));
+    Ok(graph.outputs.iter().copied().filter(is_wanted).collect())
 }
 
 /// One output of a run.
@@ -169,47 +156,61 @@ impl Output<'_> {
         let store = self.engine.store.as_ref()?;
         let bytes = store.get("plan", &self.plan_key())?;
         let maps: Vec<WantedMap> = postcard::from_bytes(&bytes).ok()?;
-        maps.iter()
-            .all(|map| self.in_place(store, map))
-            .then_some(maps)
+        let events: Option<Vec<Event>> = maps.iter().map(|map| self.in_place(store, map)).collect();
+        events?
+            .into_iter()
+            .for_each(|event| self.request.listener.hear(event));
+        Some(maps)
     }
 
     fn path(&self, map: &WantedMap) -> PathBuf {
         self.request.folder.join(&map.file_name)
     }
 
-    /// Whether the file is there as it should be, restored from the store if need be.
-    fn in_place(&self, store: &Store, map: &WantedMap) -> bool {
-        let Some(record) = store.map(&map.key) else {
-            return false;
-        };
+    /// That the file is there as it should be, restored from the store if need be.
+    fn in_place(&self, store: &Store, map: &WantedMap) -> Option<Event> {
+        let record = store.map(&map.key)?;
         let path = self.path(map);
         let (output, channel) = (self.name().to_owned(), map.channel.clone());
         if store.matches(&record, &map.key, &path) {
-            self.request.listener.hear(Event::MapUpToDate {
-                output,
-                channel,
-                path,
-            });
-            return true;
-        }
-        let restored = store.restore(&record, &path);
-        if restored {
-            self.request.listener.hear(Event::MapRestored {
+            return Some(Event::MapUpToDate {
                 output,
                 channel,
                 path,
             });
         }
-        restored
+        store.restore(&record, &path).then_some(Event::MapRestored {
+            output,
+            channel,
+            path,
+        })
+    }
+
+    fn maps<'b>(&self, built: &'b Built) -> &'b Maps {
+        let Value::Maps(maps) = &built.values(self.index)[0] else {
+            unreachable!("checking the recipe lets only maps be outputs")
+        };
+        maps
+    }
+
+    /// The files that the output writes or has written, with its own index.
+    fn file_names(&self, known: Option<&[WantedMap]>, built: &Built) -> Vec<(NodeIndex, String)> {
+        let names: Vec<String> = match known {
+            Some(maps) => maps.iter().map(|map| map.file_name.clone()).collect(),
+            None if !built.has(self.index) => vec![],
+            None => {
+                let maps = self.maps(built);
+                let name = |channel: &String| files::file_name(self.name(), channel, maps.format);
+                maps.channels.iter().map(name).collect()
+            }
+        };
+        names.into_iter().map(|name| (self.index, name)).collect()
     }
 
     /// Paints what is not in place.
     fn paint(&self, built: &Built) -> Result<Vec<RenderedMap>, RunError> {
         let start = Instant::now();
-        let Value::Maps(maps) = &built.values(self.index)[0] else {
-            unreachable!("checking the recipe lets only maps be outputs")
-        };
+        let maps = self.maps(built);
         let pixels = self.request.pixels.unwrap_or(maps.pixels);
         self.check_size(pixels)?;
         let target = FlatPiece::new(pixels, maps.size);
@@ -227,11 +228,15 @@ impl Output<'_> {
         Ok(self.announce(wanted))
     }
 
+    /// Whether the map is in place; says so.
     fn found(&self, map: &WantedMap) -> bool {
-        self.engine
-            .store
-            .as_ref()
-            .is_some_and(|store| self.in_place(store, map))
+        let store = self.engine.store.as_ref();
+        let event = store.and_then(|store| self.in_place(store, map));
+        let found = event.is_some();
+        event
+            .into_iter()
+            .for_each(|event| self.request.listener.hear(event));
+        found
     }
 
     fn check_size(&self, [width, height]: [u32; 2]) -> Result<(), RunError> {
@@ -273,11 +278,9 @@ impl Output<'_> {
                 .for_each(|end| {
                     key.number(*end);
                 });
-            let extension = maps.format.extension();
-            let file_name = format!("{}_{channel}.{extension}", self.name());
             WantedMap {
                 channel: channel.clone(),
-                file_name,
+                file_name: files::file_name(self.name(), channel, maps.format),
                 key: key.finish(),
             }
         };

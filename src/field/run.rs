@@ -138,9 +138,11 @@ impl Program {
         let samples_key = samples.key();
         let look_up = |step: &Step| match step {
             Step::Kernel(step) if step.kernel.nanoseconds() >= DEAR => {
+                // Beyond its margin a column is neither supersampled nor has it true spreads.
                 let key = KeyHasher::new("columns", 1)
                     .key(step.key)
                     .key(samples_key)
+                    .whole(step.margin as i64)
                     .finish();
                 cache.get(&key).map_or(Stored::Under(key), Stored::Columns)
             }

@@ -60,7 +60,7 @@ pub static KIND: Kind = Kind {
         "wood": material(base_color: "#c8a06e"),
         "board": slice_cut(of: "wood", cut: end_grain, origin: (0, 0, 500), size: (100, 50)),
     }, outputs: {
-        "example": maps(of: "board", pixels_per_mm: 2, channels: [base_color, height]),
+        "example": maps(of: "board", pixels_per_mm: 2, channels: [base_color, roughness]),
     })"##,
     build,
 };

@@ -1,0 +1,169 @@
+//! `yosegi render`: its files, its options and its events.
+
+use super::*;
+
+const MAPS: [&str; 3] = [
+    "board_base_color.png",
+    "board_normal.png",
+    "plain_roughness.png",
+];
+
+#[test]
+fn a_render_prints_its_files_and_nothing_else() {
+    let place = Place::new(BOARD);
+    let output = place.render(&[]);
+    assert_eq!((code(&output), stderr(&output)), (0, String::new()));
+    let expected: Vec<PathBuf> = MAPS
+        .iter()
+        .map(|name| Path::new("out").join(name))
+        .collect();
+    let printed = stdout(&output);
+    assert_eq!(
+        printed.lines().map(PathBuf::from).collect::<Vec<_>>(),
+        expected
+    );
+    assert_eq!(place.names("out"), MAPS);
+}
+
+#[test]
+fn a_second_render_says_that_all_is_up_to_date() {
+    let place = Place::new(BOARD);
+    let first = place.render(&["--json"]);
+    assert_eq!(code(&first), 0);
+    assert_eq!(
+        events(&first, "map_written"),
+        ["board/base_color", "board/normal", "plain/roughness"]
+    );
+    assert!(events(&first, "map_up_to_date").is_empty());
+    let second = place.render(&["--json"]);
+    assert_eq!(
+        events(&second, "map_up_to_date"),
+        ["board/base_color", "board/normal", "plain/roughness"]
+    );
+    assert_eq!(lines(&second).len(), 3);
+}
+
+#[test]
+fn without_a_cache_everything_is_written_again_and_no_store_is_made() {
+    let place = Place::new(BOARD);
+    for _ in 0..2 {
+        let output = place.call(&["render", "recipe.ron", "--no-cache", "--json"]);
+        assert_eq!(
+            (code(&output), events(&output, "map_written").len()),
+            (0, 3)
+        );
+    }
+    let mut entries: Vec<_> = fs::read_dir(place.folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    entries.sort();
+    assert_eq!(entries, ["out", "recipe.ron"]);
+}
+
+#[test]
+fn vector_instructions_tiles_and_threads_give_the_same_files() {
+    let place = Place::new(BOARD);
+    assert_eq!(code(&place.render(&[])), 0);
+    let plain = place.files("out");
+    for (index, arguments) in [
+        ["--simd", "baseline"],
+        ["--tile", "37"],
+        ["--tile", "16"],
+        ["--threads", "3"],
+    ]
+    .iter()
+    .enumerate()
+    {
+        let folder = format!("out{index}");
+        let rest = ["render", "recipe.ron", "--no-cache", "-o", &folder];
+        assert_eq!(code(&place.call(&[&rest, &arguments[..]].concat())), 0);
+        assert!(place.files(&folder) == plain, "{arguments:?}");
+    }
+}
+
+#[test]
+fn only_some_outputs_another_size_and_another_speed() {
+    let place = Place::new(BOARD);
+    assert_eq!(
+        code(&place.render(&["--only", "plain", "--size", "8x6"])),
+        0
+    );
+    assert_eq!(place.names("out"), ["plain_roughness.png"]);
+    // Width and height stand in a PNG behind its signature and the head of its first chunk.
+    let png = fs::read(place.path("out/plain_roughness.png")).unwrap();
+    assert_eq!(png[16..24], [0, 0, 0, 8, 0, 0, 0, 6]);
+    assert_eq!(code(&place.render(&["-o", "slow"])), 0);
+    assert_eq!(code(&place.render(&["-o", "fast", "--set", "speed=4"])), 0);
+    assert_ne!(place.files("slow")[0], place.files("fast")[0]);
+    // Neither the height nor the roughness has to do with the growth.
+    assert_eq!(place.files("slow")[1..], place.files("fast")[1..]);
+}
+
+#[test]
+fn one_wrong_recipe_does_not_keep_the_others_from_rendering() {
+    let place = Place::new(BOARD);
+    place.write("wrong.ron", "(nodes: {})");
+    let output = place.call(&["render", "wrong.ron", "recipe.ron", "--cache", "store"]);
+    assert_eq!(code(&output), 2);
+    assert_eq!(place.names("out"), MAPS);
+}
+
+#[test]
+fn a_recipe_without_outputs_is_not_rendered() {
+    let (nodes, _) = BOARD.split_once("    outputs").unwrap();
+    let place = Place::new(&format!("{nodes})"));
+    let output = place.render(&["--json"]);
+    assert_eq!(code(&output), 2);
+    assert_eq!(lines(&output).last().unwrap()["code"], "no-output");
+    assert!(stderr(&place.render(&[])).contains("no output"));
+}
+
+#[test]
+fn a_broken_store_is_said_and_does_no_harm() {
+    let place = Place::new(BOARD);
+    place.write("store", "not a folder");
+    let output = place.render(&[]);
+    assert_eq!(code(&output), 0);
+    assert!(
+        stderr(&output).contains("store of earlier results"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(place.names("out"), MAPS);
+}
+
+#[test]
+fn programs_at_the_same_time_share_a_store_and_a_folder() {
+    let place = Place::new(BOARD);
+    assert_eq!(
+        code(&place.call(&["render", "recipe.ron", "--no-cache", "-o", "right"])),
+        0
+    );
+    let call = ["render", "recipe.ron", "--cache", "store", "--threads", "2"];
+    let children: Vec<_> = (0..4).map(|_| start(&place, &call)).collect();
+    for child in children {
+        let output = child.wait_with_output().unwrap();
+        assert_eq!((code(&output), stderr(&output)), (0, String::new()));
+    }
+    assert!(place.files("out") == place.files("right"));
+    assert_eq!(
+        events(&place.render(&["--json"]), "map_up_to_date").len(),
+        3
+    );
+}
+
+#[test]
+fn outputs_come_once_and_in_the_order_of_the_recipe() {
+    let place = Place::new(BOARD);
+    let asked = ["--only", "plain", "--only", "board", "--only", "plain"];
+    let printed = stdout(&place.render(&asked));
+    let expected: Vec<PathBuf> = MAPS
+        .iter()
+        .map(|name| Path::new("out").join(name))
+        .collect();
+    assert_eq!(
+        printed.lines().map(PathBuf::from).collect::<Vec<_>>(),
+        expected
+    );
+}

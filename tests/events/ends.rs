@@ -1,0 +1,161 @@
+//! Runs that end early: cancelled, with failing nodes, or over a limit.
+
+use super::*;
+
+#[test]
+fn a_cancelled_run_leaves_no_map_and_the_next_one_completes() {
+    let workshop = Workshop::new(
+        "recipes",
+        Options {
+            threads: Some(1),
+            tile: 8,
+            ..stored()
+        },
+    );
+    let cancel = Cancel::new();
+    let run = workshop.render(BOARD, &[], cancel.clone(), &|event| {
+        if matches!(event, Event::Progress { .. }) {
+            cancel.cancel();
+        }
+    });
+    assert_eq!(run.result, Err(RunError::Cancelled));
+    assert_eq!(run.events.last(), Some(&Event::Cancelled));
+    assert_eq!(workshop.maps(), [""; 0]);
+    workshop.run(BOARD);
+    let fresh = without_store();
+    fresh.run(BOARD);
+    assert_eq!(
+        workshop.map("board_base_color.png"),
+        fresh.map("board_base_color.png")
+    );
+}
+
+#[test]
+fn a_run_that_is_cancelled_before_it_starts_builds_nothing() {
+    let workshop = without_store();
+    let cancel = Cancel::new();
+    cancel.cancel();
+    let run = workshop.render(BOARD, &[], cancel, &|_| {});
+    assert_eq!(run.result, Err(RunError::Cancelled));
+    assert_snapshot!(run.log(), @"cancelled");
+}
+
+#[test]
+fn outputs_that_were_done_before_a_cancel_stay() {
+    let workshop = without_store();
+    let cancel = Cancel::new();
+    let run = workshop.render(PAIR, &[], cancel.clone(), &|event| {
+        if matches!(event, Event::OutputDone { .. }) {
+            cancel.cancel();
+        }
+    });
+    assert_eq!(run.result, Err(RunError::Cancelled));
+    assert_eq!(workshop.maps(), ["pale_base_color.png"]);
+}
+
+/// `PAIR` with a cut that spans no plane in the output `deep`.
+fn half_broken() -> String {
+    edit(
+        PAIR,
+        "cut: plain_sawn, origin: (0, 0, 600), offset: 20",
+        "origin: (0, 0, 600), across: (1, 0, 0), along: (1, 0, 0)",
+    )
+}
+
+#[test]
+fn a_failing_node_is_named_and_what_is_there_stays() {
+    let workshop = with_store();
+    workshop.run(PAIR);
+    let before = ["deep_base_color.png", "pale_base_color.png"].map(|name| workshop.map(name));
+    let run = workshop.render(&half_broken(), &[], Cancel::new(), &|_| {});
+    let Err(RunError::Nodes(wrong)) = run.result else {
+        panic!("{:?}", run.result);
+    };
+    let named: Vec<_> = wrong
+        .iter()
+        .map(|it| (it.code, it.node.as_deref()))
+        .collect();
+    assert_eq!(named, [(Code::NodeFailed, Some("right"))]);
+    assert_eq!(
+        ["deep_base_color.png", "pale_base_color.png"].map(|name| workshop.map(name)),
+        before
+    );
+    // A failure is not remembered: the corrected recipe renders at once.
+    assert_snapshot!(workshop.run(PAIR), @"
+    up to date deep_base_color.png
+    up to date pale_base_color.png
+    ");
+}
+
+#[test]
+fn a_failed_node_keeps_only_its_own_outputs_back() {
+    let workshop = without_store();
+    let run = workshop.render(&half_broken(), &[], Cancel::new(), &|_| {});
+    assert!(matches!(run.result, Err(RunError::Nodes(_))));
+    assert_eq!(workshop.maps(), ["pale_base_color.png"]);
+}
+
+#[test]
+fn every_failing_node_is_named_in_the_order_of_the_file() {
+    let workshop = without_store();
+    let both = edit(
+        &half_broken(),
+        "quarter_sawn, origin: (0, 0, 600)",
+        "quarter_sawn, across: (1, 0, 0), origin: (0, 0, 600)",
+    );
+    let run = workshop.render(&both, &[], Cancel::new(), &|_| {});
+    let Err(RunError::Nodes(wrong)) = run.result else {
+        panic!("{:?}", run.result);
+    };
+    let named: Vec<_> = wrong.iter().map(|it| it.node.as_deref().unwrap()).collect();
+    assert_eq!(named, ["left", "right"]);
+    assert_eq!(workshop.maps(), [""; 0]);
+}
+
+#[test]
+fn more_pixels_than_allowed_are_refused_before_anything_is_painted() {
+    let workshop = Workshop::new(
+        "recipes",
+        Options {
+            largest_output: 48 * 40 - 1,
+            ..options()
+        },
+    );
+    let run = workshop.render(BOARD, &[], Cancel::new(), &|_| {});
+    let Err(RunError::Limit(wrong)) = &run.result else {
+        panic!("{:?}", run.result);
+    };
+    assert_eq!(wrong[0].code, Code::TooMuch);
+    assert!(!run.log().contains("tiles"), "{}", run.log());
+}
+
+#[test]
+fn two_outputs_that_would_write_one_file_are_refused() {
+    let recipe = r##"(
+        nodes: {
+            "wood": material(base_color: "#c8a06e", extras: { "old": 1, "pale_old": 2 }),
+            "piece": slice_cut(of: "wood", cut: end_grain, origin: (0, 0, 0), size: (10, 10)),
+        },
+        outputs: {
+            "board": maps(of: "piece", pixels: (8, 8), format: exr_half, channels: [pale_old]),
+            "board_pale": maps(of: "piece", pixels: (8, 8), format: exr_half, channels: [old]),
+        },
+    )"##;
+    let workshop = without_store();
+    let run = workshop.render(recipe, &[], Cancel::new(), &|_| {});
+    let Err(RunError::Nodes(wrong)) = run.result else {
+        panic!("{:?}", run.result);
+    };
+    assert_eq!(wrong[0].node.as_deref(), Some("board_pale"));
+    assert!(
+        wrong[0].message.contains("`board_pale_old.exr`"),
+        "{}",
+        wrong[0].message
+    );
+    assert_eq!(workshop.maps(), [""; 0]);
+    // Each alone is fine.
+    for name in ["board", "board_pale"] {
+        let alone = workshop.render(recipe, &[name], Cancel::new(), &|_| {});
+        assert!(alone.result.is_ok());
+    }
+}
