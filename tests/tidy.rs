@@ -36,7 +36,7 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
             continue;
         };
         for entry in entries {
-            let path = entry.unwrap().path();
+            let path = entry.expect("the folder can be listed").path();
             if path.is_dir() {
                 pending.push(path);
             } else if path.extension().is_some_and(|found| found == extension) {
@@ -58,8 +58,8 @@ fn rust_files() -> Vec<PathBuf> {
 /// The documents, with the path each is called in messages.
 fn documents() -> Vec<PathBuf> {
     let mut documents: Vec<PathBuf> = fs::read_dir(root())
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
+        .expect("the project can be listed")
+        .map(|entry| entry.expect("the project can be listed").path())
         .filter(|path| path.extension().is_some_and(|found| found == "md"))
         .collect();
     for folder in ["docs", "assets", "tests", "graphs"] {
@@ -74,7 +74,10 @@ fn none(problems: &[String]) {
 }
 
 fn shown(path: &Path) -> String {
-    path.strip_prefix(root()).unwrap().display().to_string()
+    path.strip_prefix(root())
+        .unwrap_or(path)
+        .display()
+        .to_string()
 }
 
 #[test]
@@ -193,8 +196,9 @@ fn the_readme_names_every_kind() {
 
 #[test]
 fn recipes_load_without_a_word_and_say_what_they_are_for() {
-    let recipes = files(&root().join("graphs"), "ron");
-    assert!(!recipes.is_empty());
+    let mut recipes = files(&root().join("graphs"), "ron");
+    recipes.extend(files(&root().join("docs"), "ron"));
+    assert!(recipes.len() > 1);
     let mut problems = vec![];
     for path in recipes {
         match load(&Disk, &path, &Settings::default()) {
@@ -209,6 +213,12 @@ fn recipes_load_without_a_word_and_say_what_they_are_for() {
         }
     }
     none(&problems);
+}
+
+#[test]
+fn the_first_recipe_of_the_readme_is_the_one_that_is_checked() {
+    let recipe = read(&root().join("docs/first_board.ron"));
+    assert!(read(&root().join("README.md")).contains(recipe.trim_end()));
 }
 
 #[test]

@@ -111,31 +111,18 @@ fn chosen_outputs(request: &Render<'_>) -> Result<Vec<NodeIndex>, RunError> {
     }
     let name_of = |index: &NodeIndex| &*graph.nodes[*index].name;
     let find = |name: &String| {
-        graph
-            .outputs
-            .iter()
-            .copied()
-            .find(|index| name_of(index) == name)
-            .ok_or_else(|| {
-                Diagnostic::error(Code::NoOutput, format!("the recipe has no output `{name}`"))
-                    .nearest(nearest(name, graph.outputs.iter().map(name_of)))
-                    .hint(format!(
-                        "its outputs are {}",
-                        graph
-                            .outputs
-                            .iter()
-                            .map(name_of)
-                            .collect::<Vec<_>>()
-                            .join(", ")
-                    ))
-            })
+        let found = graph.outputs.iter().find(|index| name_of(index) == name);
+        found.copied().ok_or_else(|| {
+            let names: Vec<&str> = graph.outputs.iter().map(name_of).collect();
+            let message = format!("the recipe has no output `{name}`");
+            RunError::Request(vec![
+                Diagnostic::error(Code::NoOutput, message)
+                    .nearest(nearest(name, names.iter().copied()))
+                    .hint(format!("its outputs are {}", names.join(", "))),
+            ])
+        })
     };
-    request
-        .only
-        .iter()
-        .map(find)
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(|diagnostic| RunError::Request(vec![diagnostic]))
+    request.only.iter().map(find).collect()
 }
 
 /// One output of a run.
