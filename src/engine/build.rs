@@ -290,6 +290,9 @@ impl Resolver<'_> {
     fn content_key(&self) -> Key {
         let mut key = KeyHasher::new("structure", self.node.kind.version);
         key.text(self.node.kind.name);
+        if self.node.kind.draws() {
+            key.bytes(&self.plan.graph.seed.to_le_bytes());
+        }
         for Binding { source, .. } in &self.node.inputs {
             match source {
                 Source::Link(link) => {

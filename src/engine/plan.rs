@@ -49,6 +49,9 @@ impl<'g> Plan<'g> {
         let node = &self.graph.nodes[index];
         let mut key = KeyHasher::new("node", node.kind.version);
         key.text(node.kind.name);
+        if node.kind.draws() {
+            key.bytes(&self.graph.seed.to_le_bytes());
+        }
         node.inputs
             .iter()
             .for_each(|input| self.add_source(&mut key, &input.source));

@@ -48,6 +48,12 @@ impl Kind {
             .find(|(_, output)| output.name == name)
     }
 
+    /// Whether it draws random numbers, so that its results depend on the recipe's seed: such kinds have
+    /// an input `seed` of their own.
+    pub fn draws(&self) -> bool {
+        self.input("seed").is_some()
+    }
+
     /// Whether its outputs are structures: built once, cached and stored.
     pub fn is_structure(&self) -> bool {
         self.outputs

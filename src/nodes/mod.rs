@@ -1,6 +1,7 @@
 //! The kinds of nodes, in families: one file each, and one line each in the table below.
 
 pub mod cut;
+pub mod noise;
 pub mod output;
 pub mod surface;
 pub mod wood;
@@ -19,6 +20,9 @@ pub static KINDS: &[&Kind] = &[
     &wood::colour_pattern::KIND,
     &wood::pattern_lookup::KIND,
     &wood::sample_pattern::KIND,
+    &noise::solid_noise::KIND,
+    &noise::plane_noise::KIND,
+    &noise::distort::KIND,
 ];
 
 /// The kind called `name`.

@@ -183,7 +183,24 @@ fn integrated(pattern: &ColourPattern, time: f64, width: f64) -> [f64; 3] {
             0.0,
         ];
     }
-    [sums[0] / sums[2], sums[1] / sums[2], sums[2] / width]
+    // What lies behind the end has the last colour.
+    let inside = sums[2] / width;
+    let last = f64::from(pattern.colours[pattern.colours.len() - 1][0]);
+    [sums[0] / width + (1.0 - inside) * last, sums[1] / width + (1.0 - inside), inside]
+}
+
+/// The mean over a square whose sides span these times: one box, or two where the smaller side counts.
+fn over_a_square(pattern: &ColourPattern, middle: f64, across: f64, along: f64) -> [f64; 3] {
+    let (large, small) = (across.abs().max(along.abs()), across.abs().min(along.abs()));
+    if large == 0.0 {
+        return plain(pattern, middle);
+    }
+    if small <= 0.2 * large {
+        return integrated(pattern, middle, libm::hypot(large, small));
+    }
+    let apart = small / libm::sqrt(12.0);
+    let [first, second] = [-apart, apart].map(|by| integrated(pattern, middle + by, large));
+    std::array::from_fn(|column| 0.5 * (first[column] + second[column]))
 }
 
 fn patterns() -> impl Strategy<Value = ColourPattern> {
@@ -231,13 +248,10 @@ proptest! {
             let (x, y) = ((index % SIDE) as f64 - 0.5, (index / SIDE) as f64 - 0.5);
             let across = 0.5 * (target.at(x + 1.0, y) - target.at(x - 1.0, y));
             let along = 0.5 * (target.at(x, y + 1.0) - target.at(x, y - 1.0));
-            let width = libm::hypot(f64::from(across), f64::from(along));
+            let (across, along) = (f64::from(across), f64::from(along));
+            let width = libm::hypot(across, along);
             let middle = f64::from(target.at(x, y));
-            let [red, position, inside] = if width > 0.0 {
-                integrated(&pattern, middle, width)
-            } else {
-                plain(&pattern, middle)
-            };
+            let [red, position, inside] = over_a_square(&pattern, middle, across, along);
             let expected = [red, 1.0 - red, 0.5, position, inside];
             // A share too small to be told from nothing has the last colour.
             let known = if inside > 1e-4 { 5 } else { 0 };

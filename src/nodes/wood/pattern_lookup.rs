@@ -3,6 +3,7 @@
 //! Without a spread it is the lookup of Momoi & Takatera 2014: texel floor(frac(T) N), or linear between
 //! texel centres. With one it is the exact mean over the growth time within the sample, so rings finer than
 //! a pixel melt into their mean colour and the border between late and early wood is as wide as a pixel.
+//! Behind the end of a pattern the last colour goes on: `inside` tells how much of a sample is wood.
 
 mod span;
 mod table;
@@ -62,6 +63,8 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 #[derive(Debug)]
 struct Lookup {
     table: Table,
+    /// Colour and position behind the end.
+    last: [f32; 4],
     key: Key,
 }
 
@@ -79,8 +82,10 @@ impl Lookup {
         });
         key.whole(i64::from(pattern.after_end == AfterEnd::End))
             .whole(i64::from(pattern.smooth));
+        let [r, g, b] = pattern.colours.last().copied().unwrap_or_default();
         Lookup {
             table: Table::new(pattern),
+            last: [r, g, b, 1.0],
             key: key.finish(),
         }
     }
@@ -102,8 +107,8 @@ impl Kernel for Lookup {
     fn sampling(&self) -> Sampling {
         Sampling::FilteredWhereStraight {
             column: 0,
-            absolute: 0.05,
-            relative: 0.1,
+            absolute: 0.02,
+            relative: 0.02,
         }
     }
 
@@ -121,8 +126,8 @@ impl Kernel for Lookup {
 impl Lookup {
     #[inline(always)]
     fn look_up(&self, time: InputColumn<'_>, outputs: &mut [Vec<f32>]) {
-        let mut spans = Spans::new();
-        let mut means = [[0.0; 4]; BLOCK];
+        let mut mean = Mean::new();
+        let mut other = Mean::new();
         let length = time.values.len();
         for start in (0..length).step_by(BLOCK) {
             let range = start..length.min(start + BLOCK);
@@ -131,15 +136,92 @@ impl Lookup {
                 block[..range.len()].copy_from_slice(&column[range.clone()]);
                 block
             };
-            let (times, spread) = (read(time.values), time.spread.map(read));
-            spans.place(&self.table, &times, [&spread[0], &spread[1]]);
-            self.table.means(&spans, &mut means);
-            for (lane, output) in outputs[..4].iter_mut().enumerate() {
-                for (output, mean) in output[range.clone()].iter_mut().zip(&means) {
-                    *output = mean[lane];
-                }
+            let boxes = Boxes::new(&read(time.values), time.spread.map(read));
+            mean.over(self, &boxes.first, &boxes.width);
+            if boxes.are_two {
+                other.over(self, &boxes.second, &boxes.width);
+                mean.average_with(&other);
             }
-            outputs[4][range.clone()].copy_from_slice(&spans.inside[..range.len()]);
+            for (output, mean) in outputs.iter_mut().zip(&mean.columns) {
+                output[range.clone()].copy_from_slice(&mean[..range.len()]);
+            }
+        }
+    }
+}
+
+/// The spans of time whose mean stands for the mean over a square sample.
+///
+/// The times in a square are those of a box as wide as the larger spread, blurred by a box as wide as the
+/// smaller one. Where the smaller one counts, it is integrated at its two Gauss points (exact up to cubics);
+/// elsewhere one box of the same variance does.
+struct Boxes {
+    first: [f64; BLOCK],
+    second: [f64; BLOCK],
+    width: [f32; BLOCK],
+    /// Whether first and second differ anywhere in the block.
+    are_two: bool,
+}
+
+/// Smaller spread, as a share of the larger one, from which on two boxes are used.
+const SKEWED: f32 = 0.2;
+
+/// Distance of the Gauss points from the middle of a box of width 1.
+const GAUSS: f64 = 0.288_675_134_594_812_9;
+
+impl Boxes {
+    #[inline(always)]
+    fn new(times: &[f32; BLOCK], [across, along]: [[f32; BLOCK]; 2]) -> Boxes {
+        let times = times.map(f64::from);
+        let mut boxes =
+            Boxes { first: times, second: times, width: [0.0; BLOCK], are_two: false };
+        for index in 0..BLOCK {
+            let (across, along) = (across[index].abs(), along[index].abs());
+            let (large, small) = if across > along { (across, along) } else { (along, across) };
+            let is_skewed = small > SKEWED * large;
+            let apart = if is_skewed { GAUSS * f64::from(small) } else { 0.0 };
+            boxes.width[index] =
+                if is_skewed { large } else { (across * across + along * along).sqrt() };
+            boxes.first[index] -= apart;
+            boxes.second[index] += apart;
+            boxes.are_two |= is_skewed;
+        }
+        boxes
+    }
+}
+
+/// Means of colour, position and inside over a block of spans.
+struct Mean {
+    spans: Spans,
+    means: [[f32; 4]; BLOCK],
+    columns: [[f32; BLOCK]; 5],
+}
+
+impl Mean {
+    fn new() -> Mean {
+        Mean { spans: Spans::new(), means: [[0.0; 4]; BLOCK], columns: [[0.0; BLOCK]; 5] }
+    }
+
+    #[inline(always)]
+    fn over(&mut self, lookup: &Lookup, times: &[f64; BLOCK], widths: &[f32; BLOCK]) {
+        self.spans.place(&lookup.table, times, widths);
+        lookup.table.means(&self.spans, &mut self.means);
+        for (lane, last) in lookup.last.iter().enumerate() {
+            for index in 0..BLOCK {
+                // What lies behind the end has the last colour.
+                let inside = self.spans.inside[index];
+                self.columns[lane][index] =
+                    inside * self.means[index][lane] + (1.0 - inside) * last;
+            }
+        }
+        self.columns[4] = self.spans.inside;
+    }
+
+    #[inline(always)]
+    fn average_with(&mut self, other: &Mean) {
+        for (column, other) in self.columns.iter_mut().zip(&other.columns) {
+            for (value, other) in column.iter_mut().zip(other) {
+                *value = 0.5 * (*value + *other);
+            }
         }
     }
 }

@@ -67,30 +67,30 @@ impl Spans {
         }
     }
 
-    /// Finds the spans of `spread` around `times`.
+    /// Finds the spans of `widths` around `times`.
     #[inline(always)]
     pub(super) fn place(
         &mut self,
         table: &Table,
-        times: &[f32; BLOCK],
-        spread: [&[f32; BLOCK]; 2],
+        times: &[f64; BLOCK],
+        widths: &[f32; BLOCK],
     ) {
         if table.repeats {
-            self.fold(table, times, spread);
+            self.fold(table, times, widths);
         } else {
-            self.cut(table, times, spread);
+            self.cut(table, times, widths);
         }
         self.starts.split(&self.from, table);
         self.ends.split(&self.to, table);
     }
 
-    /// Folds spans of `spread` around `times` into a table that repeats.
+    /// Folds spans of `widths` around `times` into a table that repeats.
     #[inline(always)]
-    fn fold(&mut self, table: &Table, times: &[f32; BLOCK], spread: [&[f32; BLOCK]; 2]) {
+    fn fold(&mut self, table: &Table, times: &[f64; BLOCK], widths: &[f32; BLOCK]) {
         let (years, frequency) = (table.years, table.frequency);
         for index in 0..BLOCK {
             let time = bounded(times[index], years);
-            let width = width(spread[0][index], spread[1][index], years);
+            let width = width(widths[index], years);
             let middle = time - periods(time, years, frequency) * years;
             let texels = width * table.texels_per_year;
             let half = if texels < POINT { 0.0 } else { 0.5 * width };
@@ -109,13 +109,13 @@ impl Spans {
         }
     }
 
-    /// Cuts spans of `spread` around `times` at the end of a table that does not repeat.
+    /// Cuts spans of `widths` around `times` at the end of a table that does not repeat.
     #[inline(always)]
-    fn cut(&mut self, table: &Table, times: &[f32; BLOCK], spread: [&[f32; BLOCK]; 2]) {
+    fn cut(&mut self, table: &Table, times: &[f64; BLOCK], widths: &[f32; BLOCK]) {
         let years = table.years;
         for index in 0..BLOCK {
             let time = bounded(times[index], years);
-            let width = width(spread[0][index], spread[1][index], years);
+            let width = width(widths[index], years);
             let point = width * table.texels_per_year < POINT;
             let half = if point { 0.0 } else { 0.5 * width };
             let (from, to) = (time - half, (time + half).min(years));
@@ -143,18 +143,16 @@ impl Spans {
 
 /// A time that no arithmetic below can overflow; NaN becomes the earliest.
 #[inline(always)]
-fn bounded(time: f32, years: f64) -> f64 {
+fn bounded(time: f64, years: f64) -> f64 {
     let farthest = FARTHEST * years;
-    let time = f64::from(time);
     let time = if time > -farthest { time } else { -farthest };
     if time < farthest { time } else { farthest }
 }
 
-/// How much the time changes within a sample whose neighbours differ by these two; NaN becomes the most.
+/// A width that no arithmetic above can overflow; NaN becomes the most.
 #[inline(always)]
-fn width(across: f32, along: f32, years: f64) -> f64 {
-    let width = f64::from((across * across + along * along).sqrt());
-    let farthest = FARTHEST * years;
+fn width(width: f32, years: f64) -> f64 {
+    let (width, farthest) = (f64::from(width), FARTHEST * years);
     if width < farthest { width } else { farthest }
 }
 

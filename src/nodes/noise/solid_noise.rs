@@ -1,0 +1,24 @@
+//! `solid_noise`: irregular values at every point of a solid.
+
+use super::octaves::{self, INPUTS, SOURCE, VERSION};
+use crate::node::{Build, Failure, Inputs, Kind, Output};
+use crate::value::{Domain, Value};
+
+/// Noise in a solid.
+pub static KIND: Kind = Kind {
+    name: "solid_noise",
+    version: VERSION,
+    about: "Irregular values at every point of a solid, in octaves from coarse to fine; what is finer than \
+            a pixel melts into its mean.",
+    source: SOURCE,
+    inputs: INPUTS,
+    outputs: OUTPUTS,
+    example: r##"(nodes: { "example": solid_noise(size: (0.5, 0.5, 25), octaves: 3) })"##,
+    build,
+};
+
+const OUTPUTS: &[Output] = &octaves::outputs(Domain::Solid);
+
+fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    Ok(octaves::build(KIND.name, Domain::Solid, inputs, build))
+}

@@ -1,0 +1,161 @@
+//! The resolution contract: a small render looks like the large one scaled down.
+//!
+//! Every recipe in `graphs/` is rendered at 4096 pixels and at 256; the large one is averaged over boxes
+//! of 16 x 16 pixels and compared in linear light. Switching the filtering off must break it, and the
+//! pictures must have the contrast stated here, so that grey ones cannot pass.
+
+use std::path::Path;
+use std::sync::Arc;
+use yosegi::engine::{Cancel, Engine, Event, Options, Render};
+use yosegi::graph::{Graph, Settings, load};
+use yosegi::world::Disk;
+
+const LARGE: u32 = 4096;
+const SMALL: u32 = 256;
+
+/// Linear values of one map: width, samples a pixel, values.
+struct Picture {
+    width: usize,
+    samples: usize,
+    values: Vec<f32>,
+}
+
+/// How two pictures of the same size differ, in 1/255.
+#[derive(Debug)]
+struct Difference {
+    mean: f64,
+    /// 99.9 % of the samples differ by less.
+    nearly_all: f64,
+}
+
+impl Picture {
+    fn read(path: &Path) -> Picture {
+        let image = image::open(path).unwrap();
+        let samples = usize::from(image.color().channel_count());
+        let is_colour = path.to_string_lossy().contains("base_color");
+        let linear = |byte: &u8| {
+            let encoded = f64::from(*byte) / 255.0;
+            (if is_colour { yosegi::colour::from_srgb(encoded) } else { encoded }) as f32
+        };
+        let width = image.width() as usize;
+        Picture { width, samples, values: image.as_bytes().iter().map(linear).collect() }
+    }
+
+    fn height(&self) -> usize {
+        self.values.len() / self.samples / self.width
+    }
+
+    /// Means over boxes of `side` x `side` pixels.
+    fn averaged(&self, side: usize) -> Picture {
+        let width = self.width / side;
+        let mut sums = vec![0.0f64; width * self.height() / side * self.samples];
+        for (index, value) in self.values.iter().enumerate() {
+            let (pixel, sample) = (index / self.samples, index % self.samples);
+            let (row, column) = (pixel / self.width / side, pixel % self.width / side);
+            sums[(row * width + column) * self.samples + sample] += f64::from(*value);
+        }
+        let area = (side * side) as f64;
+        let values = sums.into_iter().map(|sum| (sum / area) as f32).collect();
+        Picture { width, samples: self.samples, values }
+    }
+
+    fn difference(&self, other: &Picture) -> Difference {
+        assert_eq!(self.values.len(), other.values.len());
+        let mut apart: Vec<f64> = self
+            .values
+            .iter()
+            .zip(&other.values)
+            .map(|(a, b)| 255.0 * f64::from((a - b).abs()))
+            .collect();
+        apart.sort_by(f64::total_cmp);
+        let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+        Difference { mean, nearly_all: apart[(apart.len() - 1) * 999 / 1000] }
+    }
+
+    /// Standard deviation of the first sample, in 1/255.
+    fn contrast(&self) -> f64 {
+        let first: Vec<f64> =
+            self.values.iter().step_by(self.samples).map(|value| 255.0 * f64::from(*value)).collect();
+        let mean = first.iter().sum::<f64>() / first.len() as f64;
+        (first.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / first.len() as f64).sqrt()
+    }
+}
+
+fn recipe(name: &str) -> Graph {
+    let path = Path::new("graphs").join(format!("{name}.ron"));
+    load(&Disk, &path, &Settings::default()).map(|loaded| loaded.graph).unwrap()
+}
+
+/// Renders an output; gives its maps without the normals, which are compared as slopes of the height.
+fn render(graph: &Graph, output: &str, pixels: [u32; 2], filtering: bool) -> Vec<Picture> {
+    let folder = tempfile::tempdir().unwrap();
+    let options = Options { filtering, memory: 0, ..Options::default() };
+    let engine = Engine::new(Arc::new(Disk), options).unwrap();
+    let maps = engine
+        .render(&Render {
+            graph,
+            folder: folder.path().to_owned(),
+            only: vec![output.to_owned()],
+            pixels: Some(pixels),
+            listener: &|_: Event| {},
+            cancel: Cancel::new(),
+        })
+        .unwrap();
+    maps.iter().filter(|map| map.channel != "normal").map(|map| Picture::read(&map.path)).collect()
+}
+
+/// Width and height of a picture of a piece whose longer side has `side` pixels, `factor` times as large.
+fn pixels(shape: [f64; 2], side: u32, factor: u32) -> [u32; 2] {
+    let longest = shape[0].max(shape[1]);
+    shape.map(|length| factor * (length / longest * f64::from(side)).round() as u32)
+}
+
+/// Checks every map of an output; `contrast` is the least that the small base colour has.
+fn keeps_the_contract(name: &str, output: &str, shape: [f64; 2], side: u32, contrast: f64) {
+    let graph = recipe(name);
+    let factor = LARGE / side;
+    let large = render(&graph, output, pixels(shape, side, factor), true);
+    let small = render(&graph, output, pixels(shape, side, 1), true);
+    let bare = render(&graph, output, pixels(shape, side, 1), false);
+    for (index, (large, small)) in large.iter().zip(&small).enumerate() {
+        let difference = large.averaged(factor as usize).difference(small);
+        println!("{name} {output} map {index}: {difference:?}, contrast {:.1}", small.contrast());
+        assert!(difference.mean <= 2.0, "{name} {output} map {index}: {difference:?}");
+        assert!(difference.nearly_all <= 12.0, "{name} {output} map {index}: {difference:?}");
+    }
+    let expected = large[0].averaged(factor as usize);
+    assert!(expected.contrast() >= contrast, "{name} {output}: contrast {}", expected.contrast());
+    let difference = expected.difference(&bare[0]);
+    println!("{name} {output} without filtering: {difference:?}");
+    assert!(
+        difference.mean > 2.0 || difference.nearly_all > 12.0,
+        "{name} {output}: filtering makes no difference: {difference:?}"
+    );
+}
+
+#[test]
+fn straight_trunk_keeps_the_contract() {
+    keeps_the_contract("straight_trunk", "plank", [160.0, 480.0], SMALL, 10.0);
+}
+
+#[test]
+fn bent_trunk_keeps_the_contract() {
+    keeps_the_contract("bent_trunk", "quarter_sawn", [200.0, 640.0], SMALL, 4.0);
+    keeps_the_contract("bent_trunk", "plain_sawn", [200.0, 640.0], SMALL, 4.0);
+}
+
+#[test]
+fn boards_of_the_spruce_log_keep_the_contract() {
+    keeps_the_contract("spruce_log_board", "plain_sawn", [140.0, 900.0], SMALL, 6.0);
+    keeps_the_contract("spruce_log_board", "quarter_sawn", [140.0, 900.0], SMALL, 6.0);
+}
+
+#[test]
+fn disc_of_the_spruce_log_keeps_the_contract() {
+    keeps_the_contract("spruce_log_board", "disc", [260.0, 260.0], SMALL, 10.0);
+}
+
+#[test]
+fn disc_has_no_moire_at_64_pixels() {
+    keeps_the_contract("spruce_log_board", "disc", [260.0, 260.0], 64, 10.0);
+}
