@@ -35,10 +35,18 @@ impl Picture {
         let is_colour = path.to_string_lossy().contains("base_color");
         let linear = |byte: &u8| {
             let encoded = f64::from(*byte) / 255.0;
-            (if is_colour { yosegi::colour::from_srgb(encoded) } else { encoded }) as f32
+            (if is_colour {
+                yosegi::colour::from_srgb(encoded)
+            } else {
+                encoded
+            }) as f32
         };
         let width = image.width() as usize;
-        Picture { width, samples, values: image.as_bytes().iter().map(linear).collect() }
+        Picture {
+            width,
+            samples,
+            values: image.as_bytes().iter().map(linear).collect(),
+        }
     }
 
     fn height(&self) -> usize {
@@ -56,7 +64,11 @@ impl Picture {
         }
         let area = (side * side) as f64;
         let values = sums.into_iter().map(|sum| (sum / area) as f32).collect();
-        Picture { width, samples: self.samples, values }
+        Picture {
+            width,
+            samples: self.samples,
+            values,
+        }
     }
 
     fn difference(&self, other: &Picture) -> Difference {
@@ -69,27 +81,45 @@ impl Picture {
             .collect();
         apart.sort_by(f64::total_cmp);
         let mean = apart.iter().sum::<f64>() / apart.len() as f64;
-        Difference { mean, nearly_all: apart[(apart.len() - 1) * 999 / 1000] }
+        Difference {
+            mean,
+            nearly_all: apart[(apart.len() - 1) * 999 / 1000],
+        }
     }
 
     /// Standard deviation of the first sample, in 1/255.
     fn contrast(&self) -> f64 {
-        let first: Vec<f64> =
-            self.values.iter().step_by(self.samples).map(|value| 255.0 * f64::from(*value)).collect();
+        let first: Vec<f64> = self
+            .values
+            .iter()
+            .step_by(self.samples)
+            .map(|value| 255.0 * f64::from(*value))
+            .collect();
         let mean = first.iter().sum::<f64>() / first.len() as f64;
-        (first.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / first.len() as f64).sqrt()
+        (first
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f64>()
+            / first.len() as f64)
+            .sqrt()
     }
 }
 
 fn recipe(name: &str) -> Graph {
     let path = Path::new("graphs").join(format!("{name}.ron"));
-    load(&Disk, &path, &Settings::default()).map(|loaded| loaded.graph).unwrap()
+    load(&Disk, &path, &Settings::default())
+        .map(|loaded| loaded.graph)
+        .unwrap()
 }
 
 /// Renders an output; gives its maps without the normals, which are compared as slopes of the height.
 fn render(graph: &Graph, output: &str, pixels: [u32; 2], filtering: bool) -> Vec<Picture> {
     let folder = tempfile::tempdir().unwrap();
-    let options = Options { filtering, memory: 0, ..Options::default() };
+    let options = Options {
+        filtering,
+        memory: 0,
+        ..Options::default()
+    };
     let engine = Engine::new(Arc::new(Disk), options).unwrap();
     let maps = engine
         .render(&Render {
@@ -101,7 +131,10 @@ fn render(graph: &Graph, output: &str, pixels: [u32; 2], filtering: bool) -> Vec
             cancel: Cancel::new(),
         })
         .unwrap();
-    maps.iter().filter(|map| map.channel != "normal").map(|map| Picture::read(&map.path)).collect()
+    maps.iter()
+        .filter(|map| map.channel != "normal")
+        .map(|map| Picture::read(&map.path))
+        .collect()
 }
 
 /// Width and height of a picture of a piece whose longer side has `side` pixels, `factor` times as large.
@@ -119,12 +152,25 @@ fn keeps_the_contract(name: &str, output: &str, shape: [f64; 2], side: u32, cont
     let bare = render(&graph, output, pixels(shape, side, 1), false);
     for (index, (large, small)) in large.iter().zip(&small).enumerate() {
         let difference = large.averaged(factor as usize).difference(small);
-        println!("{name} {output} map {index}: {difference:?}, contrast {:.1}", small.contrast());
-        assert!(difference.mean <= 2.0, "{name} {output} map {index}: {difference:?}");
-        assert!(difference.nearly_all <= 12.0, "{name} {output} map {index}: {difference:?}");
+        println!(
+            "{name} {output} map {index}: {difference:?}, contrast {:.1}",
+            small.contrast()
+        );
+        assert!(
+            difference.mean <= 2.0,
+            "{name} {output} map {index}: {difference:?}"
+        );
+        assert!(
+            difference.nearly_all <= 12.0,
+            "{name} {output} map {index}: {difference:?}"
+        );
     }
     let expected = large[0].averaged(factor as usize);
-    assert!(expected.contrast() >= contrast, "{name} {output}: contrast {}", expected.contrast());
+    assert!(
+        expected.contrast() >= contrast,
+        "{name} {output}: contrast {}",
+        expected.contrast()
+    );
     let difference = expected.difference(&bare[0]);
     println!("{name} {output} without filtering: {difference:?}");
     assert!(
@@ -147,7 +193,13 @@ fn bent_trunk_keeps_the_contract() {
 #[test]
 fn boards_of_the_spruce_log_keep_the_contract() {
     keeps_the_contract("spruce_log_board", "plain_sawn", [140.0, 900.0], SMALL, 6.0);
-    keeps_the_contract("spruce_log_board", "quarter_sawn", [140.0, 900.0], SMALL, 6.0);
+    keeps_the_contract(
+        "spruce_log_board",
+        "quarter_sawn",
+        [140.0, 900.0],
+        SMALL,
+        6.0,
+    );
 }
 
 #[test]

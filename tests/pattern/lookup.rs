@@ -186,7 +186,11 @@ fn integrated(pattern: &ColourPattern, time: f64, width: f64) -> [f64; 3] {
     // What lies behind the end has the last colour.
     let inside = sums[2] / width;
     let last = f64::from(pattern.colours[pattern.colours.len() - 1][0]);
-    [sums[0] / width + (1.0 - inside) * last, sums[1] / width + (1.0 - inside), inside]
+    [
+        sums[0] / width + (1.0 - inside) * last,
+        sums[1] / width + (1.0 - inside),
+        inside,
+    ]
 }
 
 /// The mean over a square whose sides span these times: one box, or two where the smaller side counts.

@@ -172,15 +172,30 @@ impl Boxes {
     #[inline(always)]
     fn new(times: &[f32; BLOCK], [across, along]: [[f32; BLOCK]; 2]) -> Boxes {
         let times = times.map(f64::from);
-        let mut boxes =
-            Boxes { first: times, second: times, width: [0.0; BLOCK], are_two: false };
+        let mut boxes = Boxes {
+            first: times,
+            second: times,
+            width: [0.0; BLOCK],
+            are_two: false,
+        };
         for index in 0..BLOCK {
             let (across, along) = (across[index].abs(), along[index].abs());
-            let (large, small) = if across > along { (across, along) } else { (along, across) };
+            let (large, small) = if across > along {
+                (across, along)
+            } else {
+                (along, across)
+            };
             let is_skewed = small > SKEWED * large;
-            let apart = if is_skewed { GAUSS * f64::from(small) } else { 0.0 };
-            boxes.width[index] =
-                if is_skewed { large } else { (across * across + along * along).sqrt() };
+            let apart = if is_skewed {
+                GAUSS * f64::from(small)
+            } else {
+                0.0
+            };
+            boxes.width[index] = if is_skewed {
+                large
+            } else {
+                (across * across + along * along).sqrt()
+            };
             boxes.first[index] -= apart;
             boxes.second[index] += apart;
             boxes.are_two |= is_skewed;
@@ -198,7 +213,11 @@ struct Mean {
 
 impl Mean {
     fn new() -> Mean {
-        Mean { spans: Spans::new(), means: [[0.0; 4]; BLOCK], columns: [[0.0; BLOCK]; 5] }
+        Mean {
+            spans: Spans::new(),
+            means: [[0.0; 4]; BLOCK],
+            columns: [[0.0; BLOCK]; 5],
+        }
     }
 
     #[inline(always)]

@@ -69,12 +69,7 @@ impl Spans {
 
     /// Finds the spans of `widths` around `times`.
     #[inline(always)]
-    pub(super) fn place(
-        &mut self,
-        table: &Table,
-        times: &[f64; BLOCK],
-        widths: &[f32; BLOCK],
-    ) {
+    pub(super) fn place(&mut self, table: &Table, times: &[f64; BLOCK], widths: &[f32; BLOCK]) {
         if table.repeats {
             self.fold(table, times, widths);
         } else {
