@@ -15,7 +15,7 @@ use yosegi::world::Disk;
 const FOLDER: &str = "tests/diagnostics";
 
 /// Codes that no file of reasonable size in this folder can cause, and the tests that cause them.
-const ELSEWHERE: [(Code, &str); 4] = [
+const ELSEWHERE: [(Code, &str); 6] = [
     (Code::FileNotRead, "tests/diagnostics_limits.rs"),
     (Code::TooLarge, "tests/diagnostics_limits.rs"),
     (
@@ -23,6 +23,8 @@ const ELSEWHERE: [(Code, &str); 4] = [
         "tests/diagnostics_limits.rs: no kind gives a plane field yet",
     ),
     (Code::NodeFailed, "the tests of the engine"),
+    (Code::OutputNotWritten, "the tests of the engine"),
+    (Code::TooMuch, "the tests of the engine"),
 ];
 
 fn recipes() -> Vec<PathBuf> {
