@@ -192,13 +192,13 @@ fn bent_trunk_keeps_the_contract() {
 
 #[test]
 fn boards_of_the_spruce_log_keep_the_contract() {
-    keeps_the_contract("spruce_log_board", "plain_sawn", [140.0, 900.0], SMALL, 6.0);
+    keeps_the_contract("spruce_log_board", "plain_sawn", [140.0, 900.0], SMALL, 4.0);
     keeps_the_contract(
         "spruce_log_board",
         "quarter_sawn",
         [140.0, 900.0],
         SMALL,
-        6.0,
+        4.0,
     );
 }
 

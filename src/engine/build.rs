@@ -15,8 +15,8 @@ use petgraph::Direction;
 use petgraph::graph::NodeIndex;
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 /// What surrounds the building of nodes.
@@ -30,6 +30,8 @@ pub(super) struct Builder<'a> {
 /// The built nodes of a plan.
 pub(super) struct Built {
     cells: HashMap<NodeIndex, Cell>,
+    /// What is wrong with the nodes that could not be built; nodes that read them are left out.
+    pub(super) failures: Vec<Diagnostic>,
 }
 
 struct Cell {
@@ -39,18 +41,35 @@ struct Cell {
 }
 
 impl Built {
+    /// Whether everything is there.
+    ///
+    /// # Errors
+    /// What could not be built.
+    pub(super) fn complete(&self) -> Result<(), RunError> {
+        if self.failures.is_empty() {
+            Ok(())
+        } else {
+            Err(RunError::Nodes(self.failures.clone()))
+        }
+    }
+
+    /// Whether the node is there.
+    pub(super) fn has(&self, node: NodeIndex) -> bool {
+        self.structure(node).is_some()
+    }
+
     /// The values of a node, in the order of its outputs.
     pub(super) fn values(&self, node: NodeIndex) -> &[Value] {
         &self
             .structure(node)
-            .expect("every node of a finished plan is built")
+            .expect("only nodes that are there are asked for")
             .values
     }
 
     /// The content key of one output of a node.
     pub(super) fn key(&self, node: NodeIndex, output: usize) -> Key {
         self.structure(node)
-            .expect("every node of a finished plan is built")
+            .expect("only nodes that are there are asked for")
             .keys[output]
     }
 
@@ -60,52 +79,46 @@ impl Built {
 }
 
 impl Builder<'_> {
-    /// Builds every node of the plan.
+    /// Builds every node of the plan; what could not be built is in [`Built::failures`].
     ///
     /// # Errors
-    /// What is wrong with each node that could not be built; nodes that read it are left out.
+    /// [`RunError::Cancelled`].
     pub(super) fn build(&self, plan: &Plan<'_>) -> Result<Built, RunError> {
-        let built = Built {
-            cells: plan
-                .order
-                .iter()
-                .map(|node| (*node, Cell::new(plan, *node)))
-                .collect(),
+        let cells = plan
+            .order
+            .iter()
+            .map(|node| (*node, Cell::new(plan, *node)))
+            .collect();
+        let mut built = Built {
+            cells,
+            failures: vec![],
         };
-        let failures = OnceLockList::default();
+        let failures = Failures::default();
+        // Looked up before anything runs: later a node may be ready because another has started it.
+        let ready: Vec<NodeIndex> = plan
+            .order
+            .iter()
+            .copied()
+            .filter(|node| built.cells[node].is_ready())
+            .collect();
         rayon::scope(|scope| {
-            for node in &plan.order {
-                if plan
-                    .graph
-                    .nodes
-                    .neighbors_directed(*node, Direction::Incoming)
-                    .next()
-                    .is_none()
-                {
-                    scope.spawn(|scope| self.run(plan, &built, &failures, *node, scope));
-                }
+            for node in ready {
+                let (built, failures) = (&built, &failures);
+                scope.spawn(move |scope| self.run(plan, built, failures, node, scope));
             }
         });
         if self.cancel.is_cancelled() {
             return Err(RunError::Cancelled);
         }
-        let mut failures = failures
-            .0
-            .into_inner()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        failures.sort_by_key(|failure| failure.label.as_ref().map(|label| label.span.start));
-        if failures.is_empty() {
-            Ok(built)
-        } else {
-            Err(RunError::Nodes(failures))
-        }
+        built.failures = failures.sorted();
+        Ok(built)
     }
 
     fn run<'s>(
         &'s self,
         plan: &'s Plan<'_>,
         built: &'s Built,
-        failures: &'s OnceLockList,
+        failures: &'s Failures,
         index: NodeIndex,
         scope: &rayon::Scope<'s>,
     ) {
@@ -220,17 +233,30 @@ impl Cell {
             result: OnceLock::new(),
         }
     }
+
+    /// Whether it reads nothing that has to be built before.
+    fn is_ready(&self) -> bool {
+        self.waiting.load(Ordering::Acquire) == 0
+    }
 }
 
+/// What could not be built, reported from any thread.
 #[derive(Default)]
-struct OnceLockList(std::sync::Mutex<Vec<Diagnostic>>);
+struct Failures(Mutex<Vec<Diagnostic>>);
 
-impl OnceLockList {
+impl Failures {
     fn push(&self, diagnostic: Diagnostic) {
         self.0
             .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .unwrap_or_else(PoisonError::into_inner)
             .push(diagnostic);
+    }
+
+    /// All failures in the order of the recipe.
+    fn sorted(self) -> Vec<Diagnostic> {
+        let mut failures = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
+        failures.sort_by_key(|failure| failure.label.as_ref().map(|label| label.span.start));
+        failures
     }
 }
 

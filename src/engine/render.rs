@@ -92,9 +92,11 @@ impl Engine {
             let missing: Vec<NodeIndex> = open.iter().map(|output| output.index).collect();
             let rest = self.plan(request.graph, &missing)?;
             let built = self.build(&rest, request.listener, &request.cancel)?;
-            for output in &open {
+            // An output that depends on a failed node does not keep the others from being rendered.
+            for output in open.iter().filter(|output| built.has(output.index)) {
                 rendered.extend(output.paint(&built)?);
             }
+            built.complete()?;
         }
         Ok(rendered)
     }

@@ -40,6 +40,7 @@ impl Engine {
         let built = self
             .threads
             .install(|| self.build(&plan, listener, &Cancel::new()))?;
+        built.complete()?;
         let fields = fields_of(graph, index, built.values(index));
         let chosen: Vec<SampledField> = fields
             .iter()

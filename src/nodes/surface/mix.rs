@@ -1,10 +1,10 @@
 //! `mix`: a colour between two colours, in linear light.
 //!
 //! The inputs arrive averaged over the pixel, and what is mixed are the averages: exact where only the
-//! colours or only the amount change within a pixel. Amounts beyond 0 to 1 are clamped, which is exact
-//! unless a field crosses 0 or 1 within a pixel.
+//! colours or only the amount change within a pixel. Amounts beyond 0 to 1 are clamped. Where the amount
+//! bends within a pixel, as at the rim of a knot, the mix is supersampled.
 
-use crate::field::{Block, Kernel};
+use crate::field::{Block, Kernel, Sampling};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Type, Unit, Value};
@@ -33,6 +33,9 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     Ok(vec![Value::Field(build.kernel(Mix, inputs.into()))])
 }
 
+/// The amount's column, behind those of the two colours.
+const AMOUNT: usize = 6;
+
 /// Columns in: three of `a`, three of `b`, amount.
 #[derive(Debug)]
 struct Mix;
@@ -46,8 +49,16 @@ impl Kernel for Mix {
         3
     }
 
+    fn sampling(&self) -> Sampling {
+        Sampling::FilteredWhereStraight {
+            column: AMOUNT,
+            absolute: 0.08,
+            relative: 0.0,
+        }
+    }
+
     fn evaluate(&self, block: &mut Block<'_>) {
-        let amounts = block.inputs[6].values;
+        let amounts = block.inputs[AMOUNT].values;
         for (part, output) in block.outputs.iter_mut().enumerate() {
             let colours = block.inputs[part]
                 .values
