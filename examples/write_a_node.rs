@@ -1,12 +1,12 @@
 //! Adds a kind of node from outside the crate: `radial_bands`, light and dark bands around the z axis.
 //!
-//! `cargo run --release --example write_a_node` reads a recipe that uses it next to Yosegi's own kinds,
-//! prints its values at four points, and renders an end-grain disc into a temporary folder.
+//! `cargo run --release --example write_a_node` reads a recipe that uses it next to Yosegi's own kinds, and
+//! prints its values and the material's colour at four points. `render_from_rust` shows how to render one.
 
 use std::error::Error;
 use std::sync::Arc;
 use yosegi::diagnostics::render_all;
-use yosegi::engine::{Cancel, Engine, Event, Options, Render};
+use yosegi::engine::{Engine, Event, Options};
 use yosegi::field::{Block, Field, Kernel, Sampling};
 use yosegi::graph::{Settings, load_text_with};
 use yosegi::key::KeyHasher;
@@ -72,9 +72,7 @@ const RECIPE: &str = r##"(
         "bands": radial_bands(width: 4),
         "colour": mix(a: "#e8c79a", b: "#7a4524", amount: "bands"),
         "wood": material(base_color: "colour"),
-        "disc": slice_cut(of: "wood", cut: end_grain, origin: (0, 0, 0), size: (60, 60)),
     },
-    outputs: { "disc": maps(of: "disc", pixels_per_mm: 2) },
 )"##;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -84,30 +82,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let engine = Engine::new(Arc::new(Disk), Options::default())?;
     let quiet = |_: Event| {};
 
-    let fields = engine
-        .fields(&loaded.graph, "bands", &quiet)
-        .map_err(|error| render_all(error.diagnostics()))?;
     let points = [1.0, 5.0, 9.0, 13.0].map(|x| [x, 0.0, 0.0]);
-    println!(
-        "bands at x = 1, 5, 9, 13: {:?}",
-        engine.sample(&fields, &points)[0][0]
-    );
-
-    let folder = tempfile::tempdir()?;
-    let maps = engine
-        .render(&Render {
-            graph: &loaded.graph,
-            folder: folder.path().to_owned(),
-            only: vec![],
-            pixels: None,
-            listener: &quiet,
-            cancel: Cancel::new(),
-        })
-        .map_err(|error| render_all(error.diagnostics()))?;
-    println!(
-        "{} map, {} bytes",
-        maps.len(),
-        std::fs::metadata(&maps[0].path)?.len()
-    );
+    for name in ["bands", "wood.base_color"] {
+        let fields = engine
+            .fields(&loaded.graph, name, &quiet)
+            .map_err(|error| render_all(error.diagnostics()))?;
+        let values = &engine.sample(&fields, &points)[0];
+        for (column, values) in fields[0].columns.iter().zip(values) {
+            println!("{column} at x = 1, 5, 9, 13: {values:?}");
+        }
+    }
     Ok(())
 }
