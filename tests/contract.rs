@@ -4,6 +4,8 @@
 //! of 16 x 16 pixels and compared in linear light. Switching the filtering off must break it, and the
 //! pictures must have the contrast stated here, so that grey ones cannot pass.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+
 use std::path::Path;
 use std::sync::Arc;
 use yosegi::engine::{Cancel, Engine, Event, Options, Render};

@@ -16,14 +16,19 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     for path in &arguments.recipes.recipes {
         match report::load_recipe(path, &settings, arguments.recipe.json) {
             Ok(graph) if !arguments.recipe.json => report::line(&format!(
-                "{}: {} nodes, {} outputs, nothing wrong",
+                "{}: {}, {}, nothing wrong",
                 path.display(),
-                graph.by_name.len(),
-                graph.outputs.len()
+                count(graph.by_name.len(), "node"),
+                count(graph.outputs.len(), "output")
             )),
             Ok(_) => {}
             Err(exit) => worst = worst.max(exit),
         }
     }
     worst
+}
+
+/// A number of things, in words that fit it.
+fn count(number: usize, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }

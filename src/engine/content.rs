@@ -24,6 +24,9 @@ pub(super) fn key(value: &Value) -> Key {
                 key.number(*length);
             });
             key.text(maps.format.name());
+            for (channel, range) in &maps.ranges {
+                key.text(channel).number(range[0]).number(range[1]);
+            }
             maps.channels.iter().for_each(|channel| {
                 key.text(channel);
             });

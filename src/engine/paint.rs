@@ -55,7 +55,7 @@ impl Painter<'_> {
     /// [`RunError::Cancelled`], or what the writers say.
     pub(super) fn paint(&self, sheets: &mut [Sheet]) -> Result<(), PaintError> {
         let fields: Vec<Field> = sheets.iter().map(|sheet| sheet.field.clone()).collect();
-        let encoders: Vec<Encoder> = sheets.iter().map(|sheet| sheet.encoder.clone()).collect();
+        let encoders: Vec<Encoder> = sheets.iter().map(|sheet| sheet.encoder).collect();
         let program = Program::compile(&fields);
         let scratches = Mutex::new(vec![]);
         let windows = self.windows();

@@ -241,7 +241,7 @@ impl Compiler {
             .collect();
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
         let within = (self.supersampling && kernel.sampling() != Sampling::Filtered)
-            .then(|| Compiler::new(false).compile(&[self.from_root(field, place)]));
+            .then(|| Compiler::new(false).compile(&[self.seen_from_root(field, place)]));
         let key = KeyHasher::new("step", 1)
             .key(field.key())
             .key(self.places[place].key)
@@ -261,7 +261,7 @@ impl Compiler {
     }
 
     /// The field as seen from the samples' own positions.
-    fn from_root(&self, field: &Field, mut place: usize) -> Field {
+    fn seen_from_root(&self, field: &Field, mut place: usize) -> Field {
         let mut field = field.clone();
         while let Some((outer, position)) = &self.places[place].outer {
             field = field.at(position);

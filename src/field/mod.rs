@@ -84,19 +84,23 @@ impl Field {
 
     /// The columns that `kernel` computes from `inputs`, on behalf of the node called `node`.
     ///
-    /// The field is defined where its inputs are; inputs of different domains are a fault of the caller
-    /// that checking the recipe has ruled out.
+    /// The field is defined where its inputs are.
+    ///
+    /// # Panics
+    /// If inputs are of different domains, which checking the recipe has ruled out.
     pub fn kernel(node: &Arc<str>, kernel: Arc<dyn Kernel>, inputs: Vec<Field>) -> Field {
         let mut key = KeyHasher::new("kernel", 1);
         kernel.add_to_key(&mut key);
         inputs.iter().for_each(|input| {
             key.key(input.key());
         });
-        let domain = inputs
-            .iter()
-            .map(Field::domain)
-            .find(|domain| *domain != Domain::Everywhere)
-            .unwrap_or(Domain::Everywhere);
+        let domain = crate::node::common_domain(&inputs);
+        assert!(
+            inputs
+                .iter()
+                .all(|input| [domain, Domain::Everywhere].contains(&input.domain())),
+            "the kernel of `{node}` reads fields of different domains"
+        );
         let width = kernel.width();
         let node = Arc::clone(node);
         Field::new(
