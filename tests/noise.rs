@@ -1,5 +1,7 @@
 //! The recipe's seed: what draws random numbers depends on it, and nothing else does.
 
+#![allow(clippy::unwrap_used)]
+
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use yosegi::engine::{Cancel, Engine, Event, Options, Render};

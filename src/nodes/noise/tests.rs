@@ -228,8 +228,8 @@ impl Target for Pixels {
     }
 
     fn write_row(&self, x: f64, y: f64, step: f64, [u, v, w]: [&mut [f32]; 3]) {
-        for index in 0..u.len() {
-            u[index] = (self.0 * (x + index as f64 * step)) as f32;
+        for (index, u) in u.iter_mut().enumerate() {
+            *u = (self.0 * (x + index as f64 * step)) as f32;
         }
         v.fill((self.0 * y) as f32);
         w.fill(0.0);
