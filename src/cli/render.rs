@@ -129,7 +129,22 @@ fn hear(bar: &ProgressBar, json: bool, event: &Event) {
             bar.set_position(*done as u64);
             bar.set_message(output.clone());
         }
+        // A map that was there already has the faults it was written with.
         Event::MapWritten {
+            channel,
+            path,
+            not_finite,
+            clamped,
+            ..
+        }
+        | Event::MapUpToDate {
+            channel,
+            path,
+            not_finite,
+            clamped,
+            ..
+        }
+        | Event::MapRestored {
             channel,
             path,
             not_finite,

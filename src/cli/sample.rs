@@ -133,7 +133,7 @@ fn print(points: &Points, fields: &[SampledField], engine: &Engine) -> Exit {
     let mut written = writer.write_record(points.header.iter().chain(names));
     for (index, row) in points.rows.iter().enumerate() {
         // The shortest decimal that reads back as the same 32-bit float.
-        let numbers = columns.iter().map(|column| column[index].to_string());
+        let numbers = columns.iter().map(|column| format!("{:?}", column[index]));
         written = written.and_then(|()| writer.write_record(row.iter().cloned().chain(numbers)));
     }
     match written.and_then(|()| writer.flush().map_err(csv::Error::from)) {

@@ -72,6 +72,10 @@ pub enum Event {
         channel: String,
         /// The file.
         path: PathBuf,
+        /// Samples that were not finite: a PNG holds 0 or the nearest it can.
+        not_finite: u64,
+        /// Samples outside the range that the format can hold.
+        clamped: u64,
     },
     /// The file was copied from the store.
     MapRestored {
@@ -81,6 +85,10 @@ pub enum Event {
         channel: String,
         /// The file.
         path: PathBuf,
+        /// Samples that were not finite: a PNG holds 0 or the nearest it can.
+        not_finite: u64,
+        /// Samples outside the range that the format can hold.
+        clamped: u64,
     },
     /// An output is complete.
     OutputDone {

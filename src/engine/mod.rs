@@ -13,6 +13,7 @@ mod render;
 mod sample;
 mod store;
 mod target;
+mod wanted;
 
 pub use cancel::Cancel;
 pub use event::{Event, From as ReusedFrom, Listener};

@@ -7,17 +7,15 @@ use super::plan::Plan;
 use super::store::Store;
 use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
-use crate::field::{Field, Target};
+use crate::field::Target;
 use crate::graph::{Graph, no_output};
 use crate::key::{Key, KeyHasher};
-use crate::nodes::output::normal_from_height;
-use crate::output::{self, Encoder, Faults, MapKind, MapRequest};
-use crate::value::{Maps, Value};
+use crate::output::{self, Encoder, Faults, MapRequest};
+use crate::value::Maps;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Instant;
 
 /// What to render, and who is told.
@@ -49,10 +47,10 @@ pub struct RenderedMap {
 
 /// A map that an output asks for.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct WantedMap {
-    channel: String,
-    file_name: String,
-    key: Key,
+pub(super) struct WantedMap {
+    pub(super) channel: String,
+    pub(super) file_name: String,
+    pub(super) key: Key,
 }
 
 impl Engine {
@@ -128,15 +126,15 @@ fn chosen_outputs(request: &Render<'_>) -> Result<Vec<NodeIndex>, RunError> {
 }
 
 /// One output of a run.
-struct Output<'a> {
-    engine: &'a Engine,
-    request: &'a Render<'a>,
-    plan: &'a Plan<'a>,
-    index: NodeIndex,
+pub(super) struct Output<'a> {
+    pub(super) engine: &'a Engine,
+    pub(super) request: &'a Render<'a>,
+    pub(super) plan: &'a Plan<'a>,
+    pub(super) index: NodeIndex,
 }
 
 impl Output<'_> {
-    fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         &self.request.graph.nodes[self.index].name
     }
 
@@ -172,39 +170,23 @@ impl Output<'_> {
         let record = store.map(&map.key)?;
         let path = self.path(map);
         let (output, channel) = (self.name().to_owned(), map.channel.clone());
+        let [not_finite, clamped] = record.faults;
         if store.matches(&record, &map.key, &path) {
             return Some(Event::MapUpToDate {
                 output,
                 channel,
                 path,
+                not_finite,
+                clamped,
             });
         }
         store.restore(&record, &path).then_some(Event::MapRestored {
             output,
             channel,
             path,
+            not_finite,
+            clamped,
         })
-    }
-
-    fn maps<'b>(&self, built: &'b Built) -> &'b Maps {
-        let Value::Maps(maps) = &built.values(self.index)[0] else {
-            unreachable!("checking the recipe lets only maps be outputs")
-        };
-        maps
-    }
-
-    /// The files that the output writes or has written, with its own index.
-    fn file_names(&self, known: Option<&[WantedMap]>, built: &Built) -> Vec<(NodeIndex, String)> {
-        let names: Vec<String> = match known {
-            Some(maps) => maps.iter().map(|map| map.file_name.clone()).collect(),
-            None if !built.has(self.index) => vec![],
-            None => {
-                let maps = self.maps(built);
-                let name = |channel: &String| files::file_name(self.name(), channel, maps.format);
-                maps.channels.iter().map(name).collect()
-            }
-        };
-        names.into_iter().map(|name| (self.index, name)).collect()
     }
 
     /// Paints what is not in place.
@@ -216,10 +198,12 @@ impl Output<'_> {
         let target = FlatPiece::new(pixels, maps.size);
         let wanted = self.wanted_maps(maps, &target);
         let missing: Vec<&WantedMap> = wanted.iter().filter(|map| !self.found(map)).collect();
-        if !missing.is_empty() {
-            self.write_maps(maps, &target, &missing)?;
-        }
-        self.remember(&wanted, &missing);
+        let faults = if missing.is_empty() {
+            vec![]
+        } else {
+            self.write_maps(maps, &target, &missing)?
+        };
+        self.remember(&wanted, missing.into_iter().zip(faults));
         let (output, milliseconds) = (self.name().to_owned(), start.elapsed().as_secs_f64() * 1e3);
         self.request.listener.hear(Event::OutputDone {
             output,
@@ -239,78 +223,12 @@ impl Output<'_> {
         found
     }
 
-    fn check_size(&self, [width, height]: [u32; 2]) -> Result<(), RunError> {
-        let (found, limit) = (
-            u64::from(width) * u64::from(height),
-            self.engine.options.largest_output,
-        );
-        if found <= limit {
-            return Ok(());
-        }
-        let node = &self.request.graph.nodes[self.index];
-        let message = format!("the maps would have {width} x {height} = {found} pixels");
-        Err(RunError::Limit(vec![
-            Diagnostic::error(Code::TooMuch, message)
-                .at(&self.request.graph.source, node.span.clone(), "this output")
-                .in_node(&*node.name)
-                .expected(format!("at most {limit} pixels"), format!("{found} pixels"))
-                .hint(format!(
-                    "lower the resolution, or allow it with `--max-pixels {found}`"
-                )),
-        ]))
-    }
-
-    fn wanted_maps(&self, maps: &Maps, target: &FlatPiece) -> Vec<WantedMap> {
-        let describe = |channel: &String| {
-            let (field, kind) = self.field(maps, channel);
-            let mut key = KeyHasher::new("map", 1);
-            key.key(field.key())
-                .key(target.key())
-                .text(maps.format.name())
-                .text(channel);
-            key.whole(i64::from(self.engine.options.filtering));
-            key.whole(kind.samples() as i64);
-            maps.ranges
-                .get(channel)
-                .iter()
-                .copied()
-                .flatten()
-                .for_each(|end| {
-                    key.number(*end);
-                });
-            WantedMap {
-                channel: channel.clone(),
-                file_name: files::file_name(self.name(), channel, maps.format),
-                key: key.finish(),
-            }
-        };
-        maps.channels.iter().map(describe).collect()
-    }
-
-    /// The field of a channel, and what its samples are.
-    fn field(&self, maps: &Maps, channel: &str) -> (Field, MapKind) {
-        if channel == "normal" {
-            let node: Arc<str> = self.name().into();
-            return (
-                normal_from_height(&node, &maps.material.channels["height"]),
-                MapKind::Normal,
-            );
-        }
-        let field = maps.material.channels[channel].clone();
-        let kind = if field.width() == 3 {
-            MapKind::Colour
-        } else {
-            MapKind::Number
-        };
-        (field, kind)
-    }
-
     fn write_maps(
         &self,
         maps: &Maps,
         target: &FlatPiece,
         missing: &[&WantedMap],
-    ) -> Result<(), RunError> {
+    ) -> Result<Vec<Faults>, RunError> {
         let sheets: io::Result<Vec<Sheet>> = missing
             .iter()
             .map(|map| self.sheet(maps, target, map))
@@ -325,6 +243,7 @@ impl Output<'_> {
             cancel: &self.request.cancel,
         };
         painter.paint(&mut sheets)?;
+        let faults = sheets.iter().map(|sheet| sheet.faults).collect();
         for (sheet, map) in sheets.into_iter().zip(missing) {
             sheet
                 .writer
@@ -338,7 +257,7 @@ impl Output<'_> {
                 clamped: sheet.faults.clamped,
             });
         }
-        Ok(())
+        Ok(faults)
     }
 
     fn sheet(&self, maps: &Maps, target: &FlatPiece, map: &WantedMap) -> io::Result<Sheet> {
@@ -361,13 +280,19 @@ impl Output<'_> {
     }
 
     /// Tells the store what was written, and which maps the plan leads to.
-    fn remember(&self, wanted: &[WantedMap], written: &[&WantedMap]) {
+    fn remember<'m>(
+        &self,
+        wanted: &[WantedMap],
+        mut written: impl Iterator<Item = (&'m WantedMap, Faults)>,
+    ) {
         let Some(store) = &self.engine.store else {
             return;
         };
         let stored = written
-            .iter()
-            .try_for_each(|map| store.put_map(&map.key, &self.path(map)))
+            .try_for_each(|(map, faults)| {
+                let faults = [faults.non_finite, faults.clamped];
+                store.put_map(&map.key, &self.path(map), faults)
+            })
             .and_then(|()| postcard::to_stdvec(wanted).map_err(io::Error::other))
             .and_then(|bytes| store.put("plan", &self.plan_key(), &bytes));
         if let Err(error) = stored {

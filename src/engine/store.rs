@@ -24,6 +24,8 @@ const LARGEST_COPY: u64 = 64 << 20;
 /// What the store knows of a map that was written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct MapRecord {
+    /// Samples that were not finite, and samples that were clamped: every run warns of them.
+    pub(super) faults: [u64; 2],
     /// Hash of the whole file.
     pub(super) file: Key,
     /// Size of the file in bytes.
@@ -74,8 +76,13 @@ impl Store {
     ///
     /// # Errors
     /// Whatever the operating system says.
-    pub(super) fn put_map(&self, key: &Key, path: &Path) -> io::Result<()> {
-        let record = self.record(path)?;
+    pub(super) fn put_map(&self, key: &Key, path: &Path, faults: [u64; 2]) -> io::Result<()> {
+        let (file, bytes) = self.hash(path)?;
+        let record = MapRecord {
+            faults,
+            file,
+            bytes,
+        };
         if record.bytes <= LARGEST_COPY {
             self.put("file", &record.file, &self.world.read(path)?)?;
         }
@@ -87,7 +94,9 @@ impl Store {
     pub(super) fn matches(&self, record: &MapRecord, key: &Key, path: &Path) -> bool {
         // The key inside is quicker to compare, but a paint program may have kept it.
         output::read_key(&*self.world, path) == Some(*key)
-            && self.record(path).is_ok_and(|found| found == *record)
+            && self
+                .hash(path)
+                .is_ok_and(|found| found == (record.file, record.bytes))
     }
 
     /// Puts a remembered map at `path`; false if its contents are not in the store.
@@ -104,10 +113,8 @@ impl Store {
     }
 
     /// Hash and size of a file, read as a stream.
-    fn record(&self, path: &Path) -> io::Result<MapRecord> {
-        let mut stream = self.world.open(path)?;
-        let (file, bytes) = Key::of_stream(&mut stream)?;
-        Ok(MapRecord { file, bytes })
+    fn hash(&self, path: &Path) -> io::Result<(Key, u64)> {
+        Key::of_stream(&mut self.world.open(path)?)
     }
 
     fn path(&self, family: &str, key: &Key) -> PathBuf {

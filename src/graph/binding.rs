@@ -94,7 +94,7 @@ impl Linker<'_, '_> {
             return Some(Source::File(PathBuf::from(path)));
         };
         let message = format!(
-            "{} must be a file in the recipe's folder, found {}",
+            "{} must be a file in the folder of the recipe or of its assets, found {}",
             shown(slot.name),
             shown(&path)
         );
@@ -105,7 +105,10 @@ impl Linker<'_, '_> {
             reason,
             |error| {
                 error
-                    .expected("a path in the recipe's folder", shown(&path))
+                    .expected(
+                        "a path below the recipe's folder or its assets",
+                        shown(&path),
+                    )
                     .hint("write a path such as `photos/bar.png`, with forward slashes")
             },
         )

@@ -167,3 +167,27 @@ fn outputs_come_once_and_in_the_order_of_the_recipe() {
         expected
     );
 }
+
+#[test]
+fn a_map_that_is_there_already_is_warned_of_again() {
+    let place = Place::new(
+        r##"(
+            nodes: {
+                "wood": material(base_color: "#c8a06e", height: 3),
+                "board": slice_cut(of: "wood", cut: end_grain, origin: (0, 0, 0), size: (4, 3)),
+            },
+            outputs: { "board": maps(
+                of: "board", pixels_per_mm: 1, channels: [height],
+                ranges: [(channel: "height", low: 0, high: 1)],
+            ) },
+        )"##,
+    );
+    let first = stderr(&place.render(&[]));
+    assert!(
+        first.contains("12 samples") && first.contains("were clamped"),
+        "{first}"
+    );
+    assert_eq!(stderr(&place.render(&[])), first);
+    fs::remove_file(place.folder.path().join("out/board_height.png")).unwrap();
+    assert_eq!(stderr(&place.render(&[])), first);
+}

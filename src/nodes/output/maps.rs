@@ -5,6 +5,7 @@
 //! as they are, normals as (n + 1) / 2, lengths and extras scaled from their range. EXR holds everything
 //! as it is, colours linear.
 
+use crate::diagnostics::nearest;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::surface::material::STANDARD_CHANNELS;
 use crate::value::{Domain, MapFormat, Maps, Material, Type, Unit, Value};
@@ -91,6 +92,9 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         .expect("the format is one of the names that the input declares");
     let channels = inputs.names("channels").to_vec();
     let ranges = ranges(inputs)?;
+    for channel in ranges.keys() {
+        known_channel("ranges", channel, material)?;
+    }
     for channel in &channels {
         check_channel(channel, material, format, &ranges)?;
     }
@@ -133,20 +137,35 @@ fn ranges(inputs: &Inputs<'_>) -> Result<BTreeMap<String, [f64; 2]>, Failure> {
     Ok(ranges)
 }
 
+/// Refuses names that are no channel of the material, with the nearest that is one.
+fn known_channel(input: &'static str, channel: &str, material: &Material) -> Result<(), Failure> {
+    if channel == "normal" || material.channels.contains_key(channel) {
+        return Ok(());
+    }
+    let names = || {
+        material
+            .channels
+            .keys()
+            .map(String::as_str)
+            .chain(["normal"])
+    };
+    let near = nearest(channel, names());
+    let suggestion = match near.first() {
+        Some(near) => format!("did you mean `{near}`? "),
+        None => String::new(),
+    };
+    let all = names().collect::<Vec<_>>().join(", ");
+    let message = format!("the material has no channel `{channel}`");
+    Err(Failure::of_input(input, message).with_hint(format!("{suggestion}it has {all}")))
+}
+
 fn check_channel(
     channel: &str,
     material: &Material,
     format: MapFormat,
     ranges: &BTreeMap<String, [f64; 2]>,
 ) -> Result<(), Failure> {
-    let known = channel == "normal" || material.channels.contains_key(channel);
-    if !known {
-        let mut names: Vec<&str> = material.channels.keys().map(String::as_str).collect();
-        names.push("normal");
-        let message = format!("the material has no channel `{channel}`");
-        return Err(Failure::of_input("channels", message)
-            .with_hint(format!("it has {}", names.join(", "))));
-    }
+    known_channel("channels", channel, material)?;
     let is_ratio =
         channel == "normal" || (channel != "height" && STANDARD_CHANNELS.contains(&channel));
     let is_number = material

@@ -1,0 +1,106 @@
+//! What an output asks for: its maps, their fields, files and keys, and whether they are too large.
+
+use super::build::Built;
+use super::render::{Output, WantedMap};
+use super::{FlatPiece, RunError, files};
+use crate::diagnostics::{Code, Diagnostic};
+use crate::field::{Field, Target};
+use crate::key::KeyHasher;
+use crate::nodes::output::normal_from_height;
+use crate::output::MapKind;
+use crate::value::{Maps, Value};
+use petgraph::graph::NodeIndex;
+use std::sync::Arc;
+
+impl Output<'_> {
+    pub(super) fn maps<'b>(&self, built: &'b Built) -> &'b Maps {
+        let Value::Maps(maps) = &built.values(self.index)[0] else {
+            unreachable!("checking the recipe lets only maps be outputs")
+        };
+        maps
+    }
+
+    /// The files that the output writes or has written, with its own index.
+    pub(super) fn file_names(
+        &self,
+        known: Option<&[WantedMap]>,
+        built: &Built,
+    ) -> Vec<(NodeIndex, String)> {
+        let names: Vec<String> = match known {
+            Some(maps) => maps.iter().map(|map| map.file_name.clone()).collect(),
+            None if !built.has(self.index) => vec![],
+            None => {
+                let maps = self.maps(built);
+                let name = |channel: &String| files::file_name(self.name(), channel, maps.format);
+                maps.channels.iter().map(name).collect()
+            }
+        };
+        names.into_iter().map(|name| (self.index, name)).collect()
+    }
+
+    pub(super) fn check_size(&self, [width, height]: [u32; 2]) -> Result<(), RunError> {
+        let (found, limit) = (
+            u64::from(width) * u64::from(height),
+            self.engine.options.largest_output,
+        );
+        if found <= limit {
+            return Ok(());
+        }
+        let node = &self.request.graph.nodes[self.index];
+        let message = format!("the maps would have {width} x {height} = {found} pixels");
+        Err(RunError::Limit(vec![
+            Diagnostic::error(Code::TooMuch, message)
+                .at(&self.request.graph.source, node.span.clone(), "this output")
+                .in_node(&*node.name)
+                .expected(format!("at most {limit} pixels"), format!("{found} pixels"))
+                .hint(format!(
+                    "lower the resolution, or allow it with `--max-pixels {found}`"
+                )),
+        ]))
+    }
+
+    pub(super) fn wanted_maps(&self, maps: &Maps, target: &FlatPiece) -> Vec<WantedMap> {
+        let describe = |channel: &String| {
+            let (field, kind) = self.field(maps, channel);
+            let mut key = KeyHasher::new("map", 1);
+            key.key(field.key())
+                .key(target.key())
+                .text(maps.format.name())
+                .text(channel);
+            key.whole(i64::from(self.engine.options.filtering));
+            key.whole(kind.samples() as i64);
+            maps.ranges
+                .get(channel)
+                .iter()
+                .copied()
+                .flatten()
+                .for_each(|end| {
+                    key.number(*end);
+                });
+            WantedMap {
+                channel: channel.clone(),
+                file_name: files::file_name(self.name(), channel, maps.format),
+                key: key.finish(),
+            }
+        };
+        maps.channels.iter().map(describe).collect()
+    }
+
+    /// The field of a channel, and what its samples are.
+    pub(super) fn field(&self, maps: &Maps, channel: &str) -> (Field, MapKind) {
+        if channel == "normal" {
+            let node: Arc<str> = self.name().into();
+            return (
+                normal_from_height(&node, &maps.material.channels["height"]),
+                MapKind::Normal,
+            );
+        }
+        let field = maps.material.channels[channel].clone();
+        let kind = if field.width() == 3 {
+            MapKind::Colour
+        } else {
+            MapKind::Number
+        };
+        (field, kind)
+    }
+}
