@@ -126,7 +126,9 @@ impl Samples<'_> {
         match self {
             Samples::Grid { target, grid } => {
                 key.text("grid").key(target.key()).number(grid.step);
-                key.whole(grid.width as i64).whole(grid.height as i64);
+                key.whole(grid.width as i64)
+                    .whole(grid.height as i64)
+                    .whole(grid.margin as i64);
                 grid.origins.iter().flatten().for_each(|part| {
                     key.number(*part);
                 });
