@@ -2,6 +2,7 @@
 
 use super::{EngineArguments, Exit, RecipeArguments, Recipes, report};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use yosegi::engine::{Cancel, Engine, Event, Options, Render, RenderedMap};
@@ -11,7 +12,7 @@ use yosegi::world::Disk;
 pub(super) struct Arguments {
     #[command(flatten)]
     recipes: Recipes,
-    /// Folder for the maps.
+    /// Folder for the maps; with several recipes each gets a folder in it.
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     output: PathBuf,
     /// Size of the maps in pixels, instead of what the recipe states.
@@ -31,7 +32,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", conflicts_with = "no_cache")]
     cache: Option<PathBuf>,
     /// Side of a tile in pixels; the result is the same.
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=4096))]
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=512))]
     tile: u32,
     /// Most pixels that a map may have.
     #[arg(long, value_name = "N", default_value_t = 1 << 30)]
@@ -41,7 +42,13 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Exit {
     let cancel = Cancel::new();
     let switch = cancel.clone();
-    if let Err(error) = ctrlc::set_handler(move || switch.cancel()) {
+    if let Err(error) = ctrlc::set_handler(move || {
+        if switch.is_cancelled() {
+            // Asked twice: do not wait for the next tile.
+            std::process::exit(Exit::Interrupted as i32);
+        }
+        switch.cancel();
+    }) {
         report::problem(&format!("interrupts will end the program at once: {error}"));
     }
     let options = match options(arguments) {
@@ -78,7 +85,7 @@ fn render(arguments: &Arguments, engine: &Engine, recipe: &Path, cancel: &Cancel
     let listener = |event: Event| hear(&bar, json, &event);
     let result = engine.render(&Render {
         graph: &graph,
-        folder: arguments.output.clone(),
+        folder: folder_of(arguments, recipe),
         only: arguments.only.clone(),
         pixels: arguments.size,
         listener: &listener,
@@ -101,6 +108,14 @@ fn announce(maps: &[RenderedMap], json: bool) {
     }
 }
 
+/// The folder for the maps; of several recipes each has one of its own, since outputs may share names.
+fn folder_of(arguments: &Arguments, recipe: &Path) -> PathBuf {
+    match recipe.file_stem() {
+        Some(stem) if arguments.recipes.recipes.len() > 1 => arguments.output.join(stem),
+        _ => arguments.output.clone(),
+    }
+}
+
 /// A bar on a terminal, nothing elsewhere.
 fn progress_bar(json: bool) -> ProgressBar {
     let target = if json {
@@ -116,7 +131,8 @@ fn progress_bar(json: bool) -> ProgressBar {
 
 fn hear(bar: &ProgressBar, json: bool, event: &Event) {
     if json && let Ok(text) = serde_json::to_string(event) {
-        report::line(&text);
+        // Events are not the result: whoever stops listening does not stop the run.
+        let _ = writeln!(std::io::stdout().lock(), "{text}");
     }
     let say = |text: String| bar.suspend(|| eprintln!("{text}"));
     match event {

@@ -92,7 +92,10 @@ fn read_points(path: &Path, fields: &[SampledField]) -> Result<Points, (Exit, St
         let line = record.position().map_or(0, csv::Position::line);
         let mut place = [0.0; 3];
         for (axis, cell) in record.iter().enumerate().take(expected) {
-            let number: Option<f64> = cell.parse().ok().filter(|it: &f64| it.is_finite());
+            let number: Option<f64> = cell
+                .parse()
+                .ok()
+                .filter(|it: &f64| (*it as f32).is_finite());
             place[axis] = number.ok_or_else(|| {
                 wrong(format!(
                     "line {line}: expected a finite number, found `{cell}`"

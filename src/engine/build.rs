@@ -192,9 +192,11 @@ impl Builder<'_> {
         }
         let start = Instant::now();
         let stored = self.store.and_then(|store| store.get("structure", &key));
-        if let Some(structure) = stored.and_then(|bytes| content::decode(node.kind, &bytes)) {
+        if let Some(bytes) = stored
+            && let Some(structure) = content::decode(node.kind, &bytes)
+        {
             self.memory
-                .put_structure(key, structure.clone(), 4096, nanoseconds(start));
+                .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
             self.listener.hear(Event::StructureReused {
                 node: name,
                 from: From::Disk,

@@ -35,7 +35,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use store::Store;
 
-/// How an engine works. None of it changes a result.
+/// Raised whenever pixels or files change for a reason outside a kind: filtering, arithmetic, encoding.
+const RESULTS: u32 = 2;
+
+/// How an engine works. Only `filtering` changes pixels.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Number of threads; `None` takes all processors.

@@ -5,7 +5,7 @@ use super::event::{Event, Listener};
 use super::paint::{Painter, Sheet};
 use super::plan::Plan;
 use super::store::Store;
-use super::{Cancel, Engine, FlatPiece, RunError, files};
+use super::{Cancel, Engine, FlatPiece, RESULTS, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::field::Target;
 use crate::graph::{Graph, no_output};
@@ -140,7 +140,7 @@ impl Output<'_> {
 
     /// What the output is before anything has run.
     fn plan_key(&self) -> Key {
-        let mut key = KeyHasher::new("output", 1);
+        let mut key = KeyHasher::new("output", RESULTS);
         key.key(self.plan.keys[&self.index]).text(self.name());
         key.whole(i64::from(self.engine.options.filtering));
         self.request.pixels.iter().flatten().for_each(|side| {

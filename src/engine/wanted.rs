@@ -2,7 +2,7 @@
 
 use super::build::Built;
 use super::render::{Output, WantedMap};
-use super::{FlatPiece, RunError, files};
+use super::{FlatPiece, RESULTS, RunError, files};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::field::{Field, Target};
 use crate::key::KeyHasher;
@@ -62,7 +62,7 @@ impl Output<'_> {
     pub(super) fn wanted_maps(&self, maps: &Maps, target: &FlatPiece) -> Vec<WantedMap> {
         let describe = |channel: &String| {
             let (field, kind) = self.field(maps, channel);
-            let mut key = KeyHasher::new("map", 1);
+            let mut key = KeyHasher::new("map", RESULTS);
             key.key(field.key())
                 .key(target.key())
                 .text(maps.format.name())

@@ -65,6 +65,14 @@ pub(super) fn size(values: &[f32], width: usize, index: usize) -> f32 {
     (along_row * along_row + along_column * along_column).sqrt()
 }
 
+/// Whether any neighbour of the inner sample `index` differs from it.
+pub(super) fn varies(values: &[f32], width: usize, index: usize) -> bool {
+    let neighbours = [index - 1, index + 1, index - width, index + width];
+    neighbours
+        .iter()
+        .any(|neighbour| values[*neighbour] != values[index])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

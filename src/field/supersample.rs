@@ -64,7 +64,7 @@ fn pixels_to_supersample(scratch: &Scratch, step: &KernelStep, grid: &PixelGrid)
             let varies = |index: &usize| {
                 step.inputs
                     .iter()
-                    .any(|slot| spread::size(scratch.column(*slot), grid.width, *index) > 0.0)
+                    .any(|slot| spread::varies(scratch.column(*slot), grid.width, *index))
             };
             inside.filter(varies).map(|index| index as u32).collect()
         }

@@ -106,7 +106,7 @@ fn one_wrong_recipe_does_not_keep_the_others_from_rendering() {
     place.write("wrong.ron", "(nodes: {})");
     let output = place.call(&["render", "wrong.ron", "recipe.ron", "--cache", "store"]);
     assert_eq!(code(&output), 2);
-    assert_eq!(place.names("out"), MAPS);
+    assert_eq!(place.names("out/recipe"), MAPS);
 }
 
 #[test]

@@ -186,7 +186,7 @@ struct Affine {
 
 impl Kernel for Affine {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("affine").whole(1);
+        key.text("slice_cut").whole(i64::from(KIND.version));
         for vector in [self.corner, self.across, self.along] {
             vector.to_array().iter().for_each(|part| {
                 key.number(*part);

@@ -11,6 +11,7 @@ use super::trunk::{TrunkTable, trunk_times};
 use super::{GrowthModel, Reach};
 use crate::field::{Block, Kernel};
 use crate::key::KeyHasher;
+use crate::nodes::wood::growth_field;
 use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -61,7 +62,9 @@ impl Kernel for GrowthKernel {
             branches,
             settings,
         } = &self.model;
-        key.text("growth").whole(1).whole(branches.len() as i64);
+        key.text("growth")
+            .whole(i64::from(growth_field::KIND.version))
+            .whole(branches.len() as i64);
         let mut numbers = |numbers: &[f64]| {
             numbers.iter().for_each(|number| {
                 key.number(*number);
