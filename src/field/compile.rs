@@ -7,7 +7,7 @@
 use super::{Field, Kernel, Operation, Sampling};
 use crate::key::{Key, KeyHasher};
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A linear list of column operations that gives the columns of some fields.
 #[derive(Debug)]
@@ -41,9 +41,25 @@ pub(super) struct KernelStep {
     pub(super) spreads: Vec<Option<[usize; 2]>>,
     pub(super) outputs: Vec<usize>,
     /// Gives the outputs inside single pixels, where the kernel cannot filter.
-    pub(super) within: Option<Program>,
+    pub(super) within: Option<Within>,
     /// How many samples beyond the tile the outputs are read.
     pub(super) margin: usize,
+}
+
+/// The program that gives one field at its samples' own positions, compiled when it is first needed:
+/// each holds the whole way to its field, so a long chain of kernels that cannot filter would grow with
+/// the square of its length.
+#[derive(Debug)]
+pub(super) struct Within {
+    field: Field,
+    program: OnceLock<Program>,
+}
+
+impl Within {
+    pub(super) fn program(&self) -> &Program {
+        let compile = || Compiler::new(false).compile(std::slice::from_ref(&self.field));
+        self.program.get_or_init(compile)
+    }
 }
 
 /// Slots 0 to 2 hold the position of the samples.
@@ -240,8 +256,11 @@ impl Compiler {
             .map(|(column, of)| kernel.reads_spread(column).then(|| self.spread(*of)))
             .collect();
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
-        let within = (self.supersampling && kernel.sampling() != Sampling::Filtered)
-            .then(|| Compiler::new(false).compile(&[self.seen_from_root(field, place)]));
+        let within =
+            (self.supersampling && kernel.sampling() != Sampling::Filtered).then(|| Within {
+                field: self.seen_from_root(field, place),
+                program: OnceLock::new(),
+            });
         let key = KeyHasher::new("step", 1)
             .key(field.key())
             .key(self.places[place].key)

@@ -1,7 +1,7 @@
 //! Supersampling: where a kernel cannot filter, the smallest program that gives its outputs is run
 //! on a fixed grid inside the sample, and the results are averaged.
 
-use super::compile::{KernelStep, Program};
+use super::compile::{KernelStep, Within};
 use super::run::{RunContext, Scratch};
 use super::{PixelGrid, Samples, Sampling, spread};
 
@@ -15,7 +15,7 @@ const PIXELS_AT_ONCE: usize = 128;
 pub(super) fn supersample(
     scratch: &mut Scratch,
     step: &KernelStep,
-    within: &Program,
+    within: &Within,
     samples: &Samples<'_>,
     context: &RunContext<'_>,
     outputs: &mut [Vec<f32>],
@@ -27,6 +27,7 @@ pub(super) fn supersample(
     if pixels.is_empty() {
         return;
     }
+    let within = within.program();
     let mut inner = scratch.within.take().unwrap_or_default();
     for pixels in pixels.chunks(PIXELS_AT_ONCE) {
         let grid = grid.within_pixels(pixels, SIDE, within.margin());
