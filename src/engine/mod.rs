@@ -38,12 +38,15 @@ use store::Store;
 /// Raised whenever pixels or files change for a reason outside a kind: filtering, arithmetic, encoding.
 const RESULTS: u32 = 2;
 
+/// Largest side of a tile: every thread holds some twenty columns of a tile at once.
+const LARGEST_TILE: u32 = 512;
+
 /// How an engine works. Only `filtering` changes pixels.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Number of threads; `None` takes all processors.
     pub threads: Option<usize>,
-    /// Side of a tile in pixels.
+    /// Side of a tile in pixels, from 1 to 512; others are taken as the nearest of these.
     pub tile: u32,
     /// Vector instructions; `None` takes the best of the machine.
     pub level: Option<Level>,
@@ -120,7 +123,8 @@ impl Engine {
     ///
     /// # Errors
     /// If the system gives no threads.
-    pub fn new(world: Arc<dyn World>, options: Options) -> io::Result<Engine> {
+    pub fn new(world: Arc<dyn World>, mut options: Options) -> io::Result<Engine> {
+        options.tile = options.tile.clamp(1, LARGEST_TILE);
         let threads = rayon::ThreadPoolBuilder::new()
             .num_threads(options.threads.unwrap_or(0))
             .build()
