@@ -53,7 +53,7 @@ fn diagnostics(path: &Path) -> Vec<Diagnostic> {
     let set = set.map(|(name, value)| (name.to_owned(), value.to_owned()));
     let settings = Settings {
         set: set.into_iter().collect(),
-        seed: None,
+        ..Settings::default()
     };
     match load(&Disk, path, &settings) {
         Err(diagnostics) => diagnostics,

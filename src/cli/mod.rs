@@ -54,6 +54,9 @@ struct RecipeArguments {
     /// Seed of every random stream, instead of the recipe's own.
     #[arg(long)]
     seed: Option<u64>,
+    /// Largest number of nodes with those inside compounds [default: 200000].
+    #[arg(long, value_name = "NUMBER")]
+    max_nodes: Option<usize>,
     /// Print events and diagnostics as JSON, one a line.
     #[arg(long)]
     json: bool,
@@ -124,6 +127,7 @@ impl RecipeArguments {
         yosegi::graph::Settings {
             set: self.set.clone(),
             seed: self.seed,
+            largest_graph: self.max_nodes,
         }
     }
 }

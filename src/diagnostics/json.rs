@@ -1,6 +1,6 @@
 //! Diagnostics as JSON, for programs.
 
-use super::{Code, Diagnostic, Position, Severity};
+use super::{Code, Diagnostic, Position, Severity, Use};
 use serde::Serialize;
 
 /// What one line of JSON holds; the names of the fields never change.
@@ -14,6 +14,7 @@ struct Line<'a> {
     column: Option<usize>,
     end: Option<End>,
     node: Option<&'a str>,
+    used_by: Vec<UsedBy<'a>>,
     expected: Option<&'a str>,
     found: Option<&'a str>,
     nearest: &'a [String],
@@ -25,6 +26,29 @@ struct Line<'a> {
 struct End {
     line: usize,
     column: usize,
+}
+
+/// A use of the compound that holds the place, the innermost first.
+#[derive(Serialize)]
+struct UsedBy<'a> {
+    file: String,
+    line: usize,
+    column: usize,
+    node: &'a str,
+    kind: &'a str,
+}
+
+impl<'a> UsedBy<'a> {
+    fn new(one: &'a Use) -> UsedBy<'a> {
+        let Position { line, column } = one.source.position(one.span.start);
+        UsedBy {
+            file: one.source.path.display().to_string(),
+            line,
+            column,
+            node: &one.node,
+            kind: one.kind,
+        }
+    }
 }
 
 /// The diagnostic as one line of JSON; what it does not have is `null`.
@@ -44,6 +68,12 @@ pub fn render_json(diagnostic: &Diagnostic) -> String {
         column: start.map(|position| position.column),
         end: end.map(|Position { line, column }| End { line, column }),
         node: diagnostic.node.as_deref(),
+        used_by: diagnostic
+            .uses
+            .iter()
+            .flat_map(|uses| uses.chain())
+            .map(UsedBy::new)
+            .collect(),
         expected: diagnostic.expected.as_deref(),
         found: diagnostic.found.as_deref(),
         nearest: &diagnostic.nearest,

@@ -38,6 +38,28 @@ pub struct Label {
     pub text: String,
 }
 
+/// Where a compound is used; the chain leads outwards to the recipe.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// The file that uses it.
+    pub source: Arc<SourceFile>,
+    /// The name of the node there.
+    pub span: Span,
+    /// The node, with the nodes it lies in: `board/planks`.
+    pub node: Arc<str>,
+    /// The compound.
+    pub kind: &'static str,
+    /// Where the compound that holds the node is used; `None` in the recipe itself.
+    pub outer: Option<Arc<Use>>,
+}
+
+impl Use {
+    /// This use and those around it, from the inside out.
+    pub fn chain(&self) -> impl Iterator<Item = &Use> {
+        std::iter::successors(Some(self), |inner| inner.outer.as_deref())
+    }
+}
+
 /// One thing that is wrong: code, place, what was expected and found, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -55,6 +77,8 @@ pub struct Diagnostic {
     pub context: Vec<Label>,
     /// The name of the node it is about.
     pub node: Option<String>,
+    /// The use of the compound whose file it is about; `None` if that file is the recipe.
+    pub uses: Option<Arc<Use>>,
     /// What was expected.
     pub expected: Option<String>,
     /// What was found.
@@ -76,6 +100,7 @@ impl Diagnostic {
             label: None,
             context: vec![],
             node: None,
+            uses: None,
             expected: None,
             found: None,
             nearest: vec![],
@@ -118,6 +143,12 @@ impl Diagnostic {
     /// Names the node it is about.
     pub fn in_node(mut self, node: impl Into<String>) -> Diagnostic {
         self.node = Some(node.into());
+        self
+    }
+
+    /// States through which uses of compounds the recipe comes to this place.
+    pub fn used_by(mut self, uses: Option<Arc<Use>>) -> Diagnostic {
+        self.uses = uses;
         self
     }
 

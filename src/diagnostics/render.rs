@@ -1,11 +1,13 @@
 //! Diagnostics as text, for people.
 
 use super::excerpt::{excerpts, safe};
-use super::{Diagnostic, Label, Severity, SourceFile};
+use super::{Diagnostic, Label, Position, Severity, SourceFile, Use};
 use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
 
 /// Diagnostics that are printed; the rest is counted.
 const SHOWN: usize = 20;
+/// Uses of compounds that are printed with one diagnostic.
+const USES: usize = 8;
 
 /// The diagnostic as rustc would show it, without colours.
 pub fn render_text(diagnostic: &Diagnostic) -> String {
@@ -83,6 +85,9 @@ fn render(diagnostic: &Diagnostic, renderer: &Renderer) -> String {
     } else if let Some(source) = &diagnostic.source {
         group = group.element(Origin::path(printed_path(source)));
     }
+    for note in uses(diagnostic) {
+        group = group.element(Level::NOTE.message(safe(&note).into_owned()));
+    }
     for help in helps(diagnostic) {
         group = group.element(Level::HELP.message(safe(&help).into_owned()));
     }
@@ -134,6 +139,28 @@ fn place<'d>(
 
 fn printed_path(source: &SourceFile) -> String {
     safe(&source.path.to_string_lossy()).into_owned()
+}
+
+/// The chain of uses that leads to the place, one line each; the middle of a long one is left out.
+fn uses(diagnostic: &Diagnostic) -> Vec<String> {
+    let chain: Vec<_> = diagnostic.uses.iter().flat_map(|one| one.chain()).collect();
+    let described = |one: &&Use| {
+        let Position { line, column } = one.source.position(one.span.start);
+        let path = printed_path(&one.source);
+        format!(
+            "in `{}`, a `{}`: {path}:{line}:{column}",
+            one.node, one.kind
+        )
+    };
+    let mut notes: Vec<_> = chain.iter().map(described).collect();
+    if notes.len() > USES {
+        let hidden = notes.len() - USES;
+        notes.splice(
+            USES / 2..USES / 2 + hidden,
+            [format!("through {hidden} more uses of compounds")],
+        );
+    }
+    notes
 }
 
 /// The nearest names and the hints, one line each.

@@ -162,7 +162,7 @@ impl Builder<'_> {
         let make = || {
             let build = Build {
                 node: &node.name,
-                seed: plan.graph.seed,
+                seed: node.origin.seed,
             };
             call(|| (node.kind.build)(&Inputs::new(node.kind, &inputs), &build))
         };
@@ -284,7 +284,7 @@ impl Resolver<'_> {
         Some(match source {
             Source::Absent => None,
             Source::Literal(value) => Some(value.clone()),
-            Source::File(path) => Some(Value::File(self.plan.files[path].clone())),
+            Source::File(file) => Some(Value::File(self.plan.files[file].clone())),
             Source::Link(link) => {
                 Some(self.built.structure(link.node)?.values[link.output].clone())
             }
@@ -319,7 +319,7 @@ impl Resolver<'_> {
         let mut key = KeyHasher::new("structure", self.node.kind.version);
         key.text(self.node.kind.name);
         if self.node.kind.draws() {
-            key.bytes(&self.plan.graph.seed.to_le_bytes());
+            key.bytes(&self.node.origin.seed.to_le_bytes());
         }
         for Binding { source, .. } in &self.node.inputs {
             match source {
@@ -372,7 +372,8 @@ fn diagnose(plan: &Plan<'_>, index: NodeIndex, failure: Failure) -> Diagnostic {
         None => node.span.clone(),
     };
     let mut diagnostic = Diagnostic::error(Code::NodeFailed, failure.message)
-        .at(&plan.graph.source, span, "")
+        .at(&node.origin.source, span, "")
+        .used_by(node.origin.uses.clone())
         .in_node(&*node.name);
     diagnostic.hints.extend(failure.hint);
     diagnostic

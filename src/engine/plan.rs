@@ -2,7 +2,7 @@
 
 use super::RunError;
 use crate::diagnostics::{Code, Diagnostic};
-use crate::graph::{Arithmetic, Graph, Source};
+use crate::graph::{Arithmetic, Graph, NamedFile, Source};
 use crate::key::{Key, KeyHasher};
 use crate::value::FileContents;
 use crate::world::World;
@@ -10,7 +10,7 @@ use petgraph::Direction;
 use petgraph::graph::NodeIndex;
 use std::collections::HashMap;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The part of a graph that some nodes depend on.
 pub(super) struct Plan<'g> {
@@ -18,7 +18,7 @@ pub(super) struct Plan<'g> {
     /// The nodes that have to run, each behind the ones it reads.
     pub(super) order: Vec<NodeIndex>,
     /// Contents of the files that they name.
-    pub(super) files: HashMap<PathBuf, FileContents>,
+    pub(super) files: HashMap<NamedFile, FileContents>,
     /// For every node in `order` what it is, before anything has run.
     pub(super) keys: HashMap<NodeIndex, Key>,
 }
@@ -50,7 +50,7 @@ impl<'g> Plan<'g> {
         let mut key = KeyHasher::new("node", node.kind.version);
         key.text(node.kind.name);
         if node.kind.draws() {
-            key.bytes(&self.graph.seed.to_le_bytes());
+            key.bytes(&node.origin.seed.to_le_bytes());
         }
         node.inputs
             .iter()
@@ -64,8 +64,8 @@ impl<'g> Plan<'g> {
                 key.text("absent");
             }
             Source::Literal(value) => value.add_to_key(key),
-            Source::File(path) => {
-                key.text("file").bytes(&self.files[path].bytes);
+            Source::File(file) => {
+                key.text("file").bytes(&self.files[file].bytes);
             }
             Source::Link(link) => {
                 key.text("link")
@@ -125,26 +125,26 @@ fn read_files(
     graph: &Graph,
     order: &[NodeIndex],
     world: &dyn World,
-) -> Result<HashMap<PathBuf, FileContents>, RunError> {
-    let folder = graph.source.path.parent().unwrap_or(Path::new(""));
+) -> Result<HashMap<NamedFile, FileContents>, RunError> {
     let mut files = HashMap::new();
     let mut errors = vec![];
     for index in order {
         let node = &graph.nodes[*index];
         for (input, binding) in node.kind.inputs.iter().zip(&node.inputs) {
-            let Source::File(path) = &binding.source else {
+            let Source::File(file) = &binding.source else {
                 continue;
             };
-            if files.contains_key(path) {
+            if files.contains_key(file) {
                 continue;
             }
+            let (folder, path) = (&*file.folder, &file.path);
             match read_beside(world, folder, path) {
                 Ok(bytes) => {
                     let contents = FileContents {
                         path: path.clone(),
                         bytes: bytes.into(),
                     };
-                    files.insert(path.clone(), contents);
+                    files.insert(file.clone(), contents);
                 }
                 Err(error) => errors.push(
                     Diagnostic::error(
@@ -152,10 +152,11 @@ fn read_files(
                         format!("cannot read `{}`: {error}", path.display()),
                     )
                     .at(
-                        &graph.source,
+                        &node.origin.source,
                         binding.span.clone(),
                         format!("named by `{}`", input.name),
                     )
+                    .used_by(node.origin.uses.clone())
                     .in_node(&*node.name)
                     .hint(format!(
                         "files are looked for in `{0}`, in `{0}/assets` and in `{0}/../assets`",

@@ -143,7 +143,8 @@ fn no_fields(
         ),
     };
     let mut diagnostic = Diagnostic::error(Code::UnknownOutput, message)
-        .at(&graph.source, node.span.clone(), "this node")
+        .at(&node.origin.source, node.span.clone(), "this node")
+        .used_by(node.origin.uses.clone())
         .nearest(nearest(part.unwrap_or_default(), names.iter().copied()));
     if !names.is_empty() {
         diagnostic = diagnostic.hint(format!("it gives {}", names.join(", ")));

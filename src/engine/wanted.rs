@@ -50,7 +50,7 @@ impl Output<'_> {
         let message = format!("the maps would have {width} x {height} = {found} pixels");
         Err(RunError::Limit(vec![
             Diagnostic::error(Code::TooMuch, message)
-                .at(&self.request.graph.source, node.span.clone(), "this output")
+                .at(&node.origin.source, node.span.clone(), "this output")
                 .in_node(&*node.name)
                 .expected(format!("at most {limit} pixels"), format!("{found} pixels"))
                 .hint(format!(

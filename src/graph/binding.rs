@@ -2,12 +2,12 @@
 
 use super::composite::default_literal;
 use super::links::Linker;
-use super::literal::{Slot, parameter_name};
+use super::literal::{Reader, Slot, parameter_name};
 use super::names::shown;
 use super::recipe::{key, report_duplicate_name};
 use super::text_literal::TextLiteral;
 use super::tree::{Shape, Tree};
-use super::{Binding, Source};
+use super::{Binding, NamedFile, Source};
 use crate::diagnostics::{Code, Span};
 use crate::node::{Input, Presence};
 use crate::value::{Type, Unit, Value};
@@ -24,10 +24,14 @@ impl Linker<'_, '_> {
         node: &Span,
     ) -> Option<Binding> {
         let span = tree.map_or(node, |tree| &tree.span).clone();
-        let source = match (tree, input.presence) {
+        let is_given = |tree: &&Tree| {
+            // What a compound was not given counts as not written, where nothing need be.
+            input.presence == Presence::Required || !self.is_left_out(tree)
+        };
+        let source = match (tree.filter(is_given), input.presence) {
             (Some(tree), _) => self.source(tree, input)?,
             (None, Presence::Optional) => Source::Absent,
-            (None, Presence::Default(text)) => default_source(input, text),
+            (None, Presence::Default(text)) => self.default_source(input, text),
             (None, Presence::Required) => {
                 return self.reader.refuse_missing(owner, input, node.clone());
             }
@@ -37,6 +41,16 @@ impl Linker<'_, '_> {
 
     fn source(&mut self, tree: &Tree, input: &'static Input) -> Option<Source> {
         let slot = Slot::from(input);
+        if let Shape::Text(text) = &tree.shape
+            && let Some(name) = parameter_name(&text.value)
+        {
+            self.may_vary(name, tree.span.clone(), input)?;
+        }
+        if input.value_type != Type::Channels
+            && let Some(passed) = self.passed(tree, slot)
+        {
+            return passed;
+        }
         match (input.value_type, &tree.shape) {
             (Type::File, _) => self.file(tree, slot),
             (Type::Channels, Shape::Map(_)) => self.channels(tree, input),
@@ -78,40 +92,11 @@ impl Linker<'_, '_> {
         let Value::Text(path) = self.reader.literal(tree, slot)? else {
             return None;
         };
-        let reason = if path.is_empty() {
-            "the path is empty"
-        } else if path.starts_with('/') {
-            "the path begins at the root of the disk"
-        } else if path.split('/').any(|part| part == "..") {
-            "the path leaves the folder"
-        } else if path.contains('\\') {
-            "the path has a backslash"
-        } else if path.contains(':') {
-            "the path has a colon"
-        } else if path.contains(char::is_control) {
-            "the path has a control character"
-        } else {
-            return Some(Source::File(PathBuf::from(path)));
-        };
-        let message = format!(
-            "{} must be a file in the folder of the recipe or of its assets, found {}",
-            shown(slot.name),
-            shown(&path)
-        );
-        self.reader.refuse(
-            Code::PathOutside,
-            message,
-            tree.span.clone(),
-            reason,
-            |error| {
-                error
-                    .expected(
-                        "a path below the recipe's folder or its assets",
-                        shown(&path),
-                    )
-                    .hint("write a path such as `photos/bar.png`, with forward slashes")
-            },
-        )
+        let path = self.reader.path(&path, tree.span.clone(), slot)?;
+        Some(Source::File(NamedFile::beside(
+            &self.reader.report.source,
+            path,
+        )))
     }
 
     /// A map from names to numbers and colours.
@@ -155,12 +140,16 @@ impl Linker<'_, '_> {
         };
         if let Some(parameter) = parameter_name(&text.value) {
             let declared = self.reader.parameters.refer(parameter);
-            let (value_type, unit) = declared.map_or((None, Unit::One), |d| (d.value_type, d.unit));
+            let (value_type, unit) =
+                declared.map_or((None, Unit::One), |(one, _)| (one.value_type, one.unit));
             let slot = if value_type == Some(Type::Colour) {
                 colour
             } else {
                 number.of(Type::Number(unit))
             };
+            if let Some(passed) = self.passed(tree, slot) {
+                return passed;
+            }
             return self.reader.literal(tree, slot).map(Source::Literal);
         }
         if text.value.starts_with('#') {
@@ -176,12 +165,49 @@ impl Linker<'_, '_> {
         self.constant(&found, &text.value, tree.span.clone(), input)?;
         Some(Source::Link(found.link))
     }
+
+    /// A default that a kind declares; the tests of kinds make sure that it is valid.
+    fn default_source(&self, input: &'static Input, text: &str) -> Source {
+        match (input.value_type, default_literal(input, text)) {
+            (Type::File, Value::Text(path)) => {
+                let source = &self.reader.report.source;
+                Source::File(NamedFile::beside(source, PathBuf::from(path)))
+            }
+            (_, value) => Source::Literal(value),
+        }
+    }
 }
 
-/// A default that a kind declares; the tests of kinds make sure that it is valid.
-fn default_source(input: &'static Input, text: &str) -> Source {
-    match (input.value_type, default_literal(input, text)) {
-        (Type::File, Value::Text(path)) => Source::File(PathBuf::from(path)),
-        (_, value) => Source::Literal(value),
+impl Reader<'_> {
+    /// A path below the folder of the file that names it, written the same on every system.
+    pub(super) fn path(&mut self, path: &str, span: Span, slot: Slot<'_>) -> Option<PathBuf> {
+        let reason = if path.is_empty() {
+            "the path is empty"
+        } else if path.starts_with('/') {
+            "the path begins at the root of the disk"
+        } else if path.split('/').any(|part| part == "..") {
+            "the path leaves the folder"
+        } else if path.contains('\\') {
+            "the path has a backslash"
+        } else if path.contains(':') {
+            "the path has a colon"
+        } else if path.contains(char::is_control) {
+            "the path has a control character"
+        } else {
+            return Some(PathBuf::from(path));
+        };
+        let message = format!(
+            "{} must be a file in the folder of the recipe or of its assets, found {}",
+            shown(slot.name),
+            shown(path)
+        );
+        self.refuse(Code::PathOutside, message, span, reason, |error| {
+            error
+                .expected(
+                    "a path below the recipe's folder or its assets",
+                    shown(path),
+                )
+                .hint("write a path such as `photos/bar.png`, with forward slashes")
+        })
     }
 }

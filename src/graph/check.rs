@@ -1,25 +1,27 @@
-//! Every node against its kind.
+//! Every node against its kind; the nodes of compounds in the place of their uses.
 
+use super::compound::{Definition, Slot};
 use super::links::{Linker, Scope};
 use super::literal::Reader;
-use super::names::{look_alike, shown};
 use super::parameters::Parameters;
-use super::recipe::{Declaration, Recipe};
+use super::recipe::Declaration;
 use super::report::Report;
-use super::{Binding, Node};
-use crate::diagnostics::{Code, Span, nearest};
+use super::{Binding, CompoundUse, Link, Node, Origin, Source};
+use crate::diagnostics::{Span, Use};
 use crate::node::Kind;
-use crate::value::{Domain, Type};
+use crate::value::{Domain, Value};
 use petgraph::graph::NodeIndex;
 use std::sync::Arc;
 
 /// A node or an output while it is checked.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Draft {
-    /// The name.
+    /// The name, behind those of the nodes it lies in.
     pub(super) name: Arc<str>,
     /// Where the name is.
     pub(super) span: Span,
+    /// The file, the seed and the use that it comes from.
+    pub(super) origin: Arc<Origin>,
     /// The kind; `None` if there is none by that name, which is reported.
     pub(super) kind: Option<&'static Kind>,
     /// One entry for each input; `None` where something is wrong, which is reported.
@@ -31,60 +33,246 @@ pub(super) struct Draft {
 }
 
 impl Draft {
+    /// A node of which nothing is known yet.
+    pub(super) fn empty(origin: &Arc<Origin>) -> Draft {
+        Draft {
+            name: "".into(),
+            span: 0..0,
+            origin: Arc::clone(origin),
+            kind: None,
+            bindings: vec![],
+            domain: None,
+            is_output: false,
+        }
+    }
+
     /// The node, if nothing is wrong with it.
     pub(super) fn finish(self) -> Option<Node> {
         Some(Node {
             name: self.name,
             kind: self.kind?,
             span: self.span,
+            origin: self.origin,
             inputs: self.bindings.into_iter().collect::<Option<_>>()?,
             domain: self.domain?,
         })
     }
 }
 
-/// Checks the nodes, then the outputs, in the order of the file.
+/// The use of a compound.
+#[derive(Debug)]
+pub(super) struct UseDraft {
+    /// The name, behind those of the nodes it lies in.
+    pub(super) name: Arc<str>,
+    /// Where the name is.
+    pub(super) span: Span,
+    /// The file that uses it.
+    pub(super) origin: Arc<Origin>,
+    /// The compound.
+    pub(super) kind: &'static Kind,
+    /// Its inputs; `None` where something is wrong, which is reported.
+    pub(super) bindings: Vec<Option<Binding>>,
+    /// Where its outputs lie.
+    pub(super) outputs: Vec<Option<Link>>,
+    /// Its nodes.
+    pub(super) nodes: std::ops::Range<usize>,
+}
+
+impl UseDraft {
+    /// The use by name, if nothing is wrong with it.
+    pub(super) fn finish(&self) -> Option<(String, CompoundUse)> {
+        let outputs: Option<Vec<_>> = self.outputs.iter().copied().collect();
+        let (kind, outputs) = (self.kind, outputs?);
+        Some((self.name.to_string(), CompoundUse { kind, outputs }))
+    }
+}
+
+/// All nodes of a recipe and of its compounds.
+#[derive(Debug)]
+pub(super) struct Expanded {
+    /// The nodes, then the outputs.
+    pub(super) drafts: Vec<Draft>,
+    /// The uses of compounds.
+    pub(super) uses: Vec<UseDraft>,
+    /// For each definition which of its inputs or parameters something refers to.
+    pub(super) used: Vec<Vec<bool>>,
+}
+
+/// A recipe, or a compound in the place of one use.
+struct Instance {
+    definition: usize,
+    /// The index of its first node.
+    base: usize,
+    /// What stands before the names of its nodes.
+    prefix: String,
+    origin: Arc<Origin>,
+    parameters: Parameters,
+}
+
+/// Checks the nodes, then the outputs, in the order of the file, and what is inside compounds behind
+/// them. `parameters` are those of the first definition, which is the recipe.
 pub(super) fn check(
     report: &mut Report,
-    recipe: &Recipe<'_>,
-    parameters: &mut Parameters,
-    kinds: &[&'static Kind],
-) -> Vec<Draft> {
-    let mut scope = Scope::default();
-    for (index, node) in recipe.nodes.iter().enumerate() {
-        scope.nodes.insert(node.name, NodeIndex::new(index));
-        scope.names.push(node.name);
-    }
-    scope.outputs = recipe.outputs.iter().map(|output| output.name).collect();
-    let declarations = || {
-        let nodes = recipe.nodes.iter().map(|node| (node, false));
-        nodes.chain(recipe.outputs.iter().map(|output| (output, true)))
+    definitions: &[Definition<'_>],
+    parameters: Parameters,
+    origin: Arc<Origin>,
+) -> Expanded {
+    let mut expanded = Expanded {
+        drafts: vec![Draft::empty(&origin); definitions[0].layout.size],
+        uses: vec![],
+        used: vec![vec![]; definitions.len()],
     };
-    for (declaration, is_output) in declarations() {
-        let kind = find_kind(report, declaration, is_output, kinds);
-        scope.kinds.push(kind);
+    let mut pending = vec![Instance {
+        definition: 0,
+        base: 0,
+        prefix: String::new(),
+        origin,
+        parameters,
+    }];
+    while let Some(mut instance) = pending.pop() {
+        report.enter(&instance.origin);
+        let definition = &definitions[instance.definition];
+        pending.extend(instance.check(report, definitions, definition, &mut expanded));
+        instance
+            .parameters
+            .add_used(&mut expanded.used[instance.definition]);
     }
-    let mut drafts = vec![];
-    for (index, (declaration, is_output)) in declarations().enumerate() {
-        let reader = Reader::new(parameters, report, Some(declaration.name));
-        let mut linker = Linker {
-            reader,
-            scope: &scope,
-            index: NodeIndex::new(index),
+    expanded
+}
+
+impl Instance {
+    /// Checks the declarations, and gives the compounds that are used among them.
+    fn check(
+        &mut self,
+        report: &mut Report,
+        definitions: &[Definition<'_>],
+        definition: &Definition<'_>,
+        expanded: &mut Expanded,
+    ) -> Vec<Instance> {
+        let scope = Scope {
+            layout: &definition.layout,
+            base: self.base,
         };
-        // What comes after too many mistakes is not reported anyway.
-        let kind = scope.kinds[index].filter(|_| !linker.reader.report.is_full());
-        let bindings = kind.map(|kind| bind_inputs(&mut linker, declaration, kind));
-        drafts.push(Draft {
-            name: declaration.name.into(),
-            span: declaration.span.clone(),
-            kind,
-            bindings: bindings.unwrap_or_default(),
-            domain: None,
-            is_output,
-        });
+        let recipe = &definition.recipe;
+        let declarations = recipe.nodes.iter().chain(&recipe.outputs);
+        let mut inside = vec![];
+        for (position, (declaration, slot)) in
+            declarations.zip(&definition.layout.slots).enumerate()
+        {
+            let index = self.base + slot.offset;
+            let mut linker = Linker {
+                reader: Reader::new(&mut self.parameters, report, Some(declaration.name)),
+                scope: &scope,
+                index: NodeIndex::new(index),
+            };
+            // What comes after too many mistakes is not reported anyway.
+            let kind = slot.kind.filter(|_| !linker.reader.report.is_full());
+            let bindings = kind.map(|kind| bind_inputs(&mut linker, declaration, kind));
+            let bindings = bindings.unwrap_or_default();
+            match (slot.inside, kind) {
+                (None, _) => {
+                    expanded.drafts[index] = Draft {
+                        name: self.name(declaration),
+                        span: declaration.span.clone(),
+                        origin: Arc::clone(&self.origin),
+                        kind,
+                        bindings,
+                        domain: None,
+                        is_output: position >= recipe.nodes.len(),
+                    };
+                }
+                (Some(used), Some(kind)) => {
+                    let one = self.used(declaration, slot, kind, bindings, &definitions[used]);
+                    inside.push(self.instance(&one, used, &definitions[used], declaration));
+                    expanded.uses.push(one);
+                }
+                (Some(_), None) => {}
+            }
+        }
+        inside
     }
-    drafts
+
+    fn name(&self, declaration: &Declaration<'_>) -> Arc<str> {
+        match self.prefix.as_str() {
+            "" => declaration.name.into(),
+            prefix => format!("{prefix}/{}", declaration.name).into(),
+        }
+    }
+
+    fn used(
+        &self,
+        declaration: &Declaration<'_>,
+        slot: &Slot,
+        kind: &'static Kind,
+        bindings: Vec<Option<Binding>>,
+        definition: &Definition<'_>,
+    ) -> UseDraft {
+        let first = self.base + slot.offset;
+        let link = |output| {
+            slot.output(output).map(|place| Link {
+                node: NodeIndex::new(self.base + place.offset),
+                output: place.output,
+            })
+        };
+        UseDraft {
+            name: self.name(declaration),
+            span: declaration.span.clone(),
+            origin: Arc::clone(&self.origin),
+            kind,
+            bindings,
+            outputs: (0..kind.outputs.len()).map(link).collect(),
+            nodes: first..first + definition.layout.size,
+        }
+    }
+
+    /// The compound in the place of its use.
+    fn instance(
+        &self,
+        one: &UseDraft,
+        definition: usize,
+        Definition {
+            file, interface, ..
+        }: &Definition<'_>,
+        declaration: &Declaration<'_>,
+    ) -> Instance {
+        let is_written = |name: &str| {
+            declaration
+                .fields
+                .iter()
+                .any(|field| field.name.text == name)
+        };
+        let declared = interface.declared.iter().zip(&one.bindings);
+        let sources = declared.map(|(declared, binding)| match is_written(&declared.name) {
+            true => Some(binding.as_ref()?.source.clone()),
+            // Files among the defaults lie beside the compound.
+            false => declared.default.clone(),
+        });
+        let seed = match one.bindings.last() {
+            Some(Some(Binding {
+                source: Source::Literal(Value::Whole(seed)),
+                ..
+            })) => *seed,
+            _ => 0,
+        };
+        let uses = Use {
+            source: Arc::clone(&self.origin.source),
+            span: one.span.clone(),
+            node: Arc::clone(&one.name),
+            kind: one.kind.name,
+            outer: self.origin.uses.clone(),
+        };
+        Instance {
+            definition,
+            base: one.nodes.start,
+            prefix: one.name.to_string(),
+            origin: Arc::new(Origin {
+                source: Arc::clone(&file.source),
+                seed: Origin::mixed_seed(self.origin.seed, seed),
+                uses: Some(Arc::new(uses)),
+            }),
+            parameters: Parameters::bound(Arc::clone(interface), sources.collect()),
+        }
+    }
 }
 
 fn bind_inputs(
@@ -100,47 +288,4 @@ fn bind_inputs(
     inputs
         .map(|(input, tree)| linker.bind(&owner, input, tree, &declaration.span))
         .collect()
-}
-
-/// The kind of a node or an output; an output gives maps and a node does not.
-fn find_kind(
-    report: &mut Report,
-    declaration: &Declaration<'_>,
-    is_output: bool,
-    kinds: &[&'static Kind],
-) -> Option<&'static Kind> {
-    let word = declaration.kind?;
-    let gives_maps = |kind: &Kind| {
-        kind.outputs
-            .first()
-            .is_some_and(|o| o.value_type == Type::Maps)
-    };
-    let Some(kind) = kinds.iter().copied().find(|kind| kind.name == word.text) else {
-        let fitting = kinds.iter().filter(|kind| gives_maps(kind) == is_output);
-        let message = format!("there is no kind {}", shown(&word.text));
-        let label = look_alike(&word.text, "no kind has this name");
-        report.add(
-            report
-                .error(Code::UnknownKind, message, word.span.clone(), label)
-                .in_node(declaration.name)
-                .nearest(nearest(&word.text, fitting.map(|kind| kind.name)))
-                .hint("run `yosegi nodes` for the list of kinds"),
-        );
-        return None;
-    };
-    if gives_maps(kind) != is_output {
-        let (is, belongs) = if is_output {
-            ("gives no maps", "nodes")
-        } else {
-            ("gives maps", "outputs")
-        };
-        let message = format!("`{}` {is}, so it belongs under `{belongs}`", kind.name);
-        report.add(
-            report
-                .error(Code::NotAnOutput, message, word.span.clone(), is)
-                .in_node(declaration.name)
-                .hint(format!("move it to `{belongs}`")),
-        );
-    }
-    Some(kind)
 }

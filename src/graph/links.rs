@@ -1,5 +1,6 @@
 //! Links: finding the node and the output, and whether the input takes what it gives.
 
+use super::compound::Layout;
 use super::described::described_unit;
 use super::literal::{Reader, Slot};
 use super::names::{look_alike, shown};
@@ -8,19 +9,14 @@ use crate::diagnostics::{Code, Span, nearest};
 use crate::node::{Input, Kind, Output, Varies};
 use crate::value::{Type, Unit};
 use petgraph::graph::NodeIndex;
-use std::collections::HashMap;
 
-/// What links can lead to.
-#[derive(Debug, Default)]
+/// What links can lead to: the nodes of one file, from an index on.
+#[derive(Debug)]
 pub(super) struct Scope<'t> {
-    /// The index of each node.
-    pub(super) nodes: HashMap<&'t str, NodeIndex>,
-    /// The names of nodes, in the order of the file.
-    pub(super) names: Vec<&'t str>,
-    /// The kind of each node and output; `None` if there is no such kind, which is reported.
-    pub(super) kinds: Vec<Option<&'static Kind>>,
-    /// The names of outputs, to which no link leads.
-    pub(super) outputs: Vec<&'t str>,
+    /// The nodes.
+    pub(super) layout: &'t Layout<'t>,
+    /// The index of the first.
+    pub(super) base: usize,
 }
 
 /// An output that a link leads to.
@@ -30,6 +26,8 @@ pub(super) struct Found {
     pub(super) link: Link,
     /// What the kind declares.
     pub(super) output: &'static Output,
+    /// The kind of the node that the link names.
+    kind: &'static Kind,
 }
 
 /// Checks the links of one node.
@@ -50,16 +48,17 @@ impl Linker<'_, '_> {
             Some((node, output)) => (node, Some(output)),
             None => (text, None),
         };
-        let Some(index) = self.scope.nodes.get(node).copied() else {
+        let Some(slot) = self.scope.layout.slot(node) else {
             return self.refuse_unknown_node(text, node, span);
         };
-        if index == self.index {
+        let index = |offset| NodeIndex::new(self.scope.base + offset);
+        if slot.inside.is_none() && index(slot.offset) == self.index {
             let message = format!("node {} takes its own output", shown(node));
             return self
                 .reader
                 .refuse(Code::SelfLink, message, span, "this node itself", |e| e);
         }
-        let kind = self.scope.kinds[index.index()]?;
+        let kind = slot.kind?;
         let position = match output {
             None => 0,
             Some(name) => match kind.output(name) {
@@ -67,13 +66,14 @@ impl Linker<'_, '_> {
                 None => return self.refuse_unknown_output(node, kind, name, span),
             },
         };
-        let output = kind.outputs.get(position)?;
+        let place = slot.output(position)?;
         Some(Found {
             link: Link {
-                node: index,
-                output: position,
+                node: index(place.offset),
+                output: place.output,
             },
-            output,
+            output: kind.outputs.get(position)?,
+            kind,
         })
     }
 
@@ -121,10 +121,10 @@ impl Linker<'_, '_> {
             shown(slot.name),
             shown(text)
         );
-        let kind = self.scope.kinds[found.link.node.index()]?;
         let node = text.split('.').next().unwrap_or(text);
         let suits = |output: &&Output| output.value_type == expected;
-        let other = kind
+        let other = found
+            .kind
             .outputs
             .iter()
             .find(suits)
@@ -177,8 +177,9 @@ impl Linker<'_, '_> {
 
     fn refuse_unknown_node<T>(&mut self, text: &str, node: &str, span: Span) -> Option<T> {
         let message = format!("there is no node {}", shown(node));
-        let names = nearest(node, self.scope.names.iter().copied());
-        let is_output = self.scope.outputs.contains(&node);
+        let layout = self.scope.layout;
+        let names = nearest(node, layout.names.iter().copied());
+        let is_output = layout.output_names.contains(&node);
         let is_number = text.parse::<f64>().is_ok();
         let label = look_alike(node, "no node has this name");
         self.reader
@@ -227,7 +228,7 @@ impl Linker<'_, '_> {
 }
 
 /// The units of two types that differ in nothing else.
-fn units(expected: Type, given: Type) -> Option<(Unit, Unit)> {
+pub(super) fn units(expected: Type, given: Type) -> Option<(Unit, Unit)> {
     match (expected, given) {
         (Type::Number(expected), Type::Number(given))
         | (Type::Vector(expected), Type::Vector(given))

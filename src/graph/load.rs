@@ -1,13 +1,16 @@
 //! Reading a recipe: from its path or its text to a checked graph.
 
-use super::check::{self, Draft};
+use super::check::{self, Draft, UseDraft};
+use super::compound::{self, Definition, Library, Slot};
 use super::parameters::Parameters;
+use super::recipe::Role;
 use super::report::Report;
-use super::{Graph, Node, domains, order, recipe, text};
+use super::{Graph, Node, Origin, domains, order, text};
 use crate::diagnostics::{Code, Diagnostic, SourceFile};
 use crate::node::Kind;
 use crate::nodes::KINDS;
-use crate::world::World;
+use crate::value::Domain;
+use crate::world::{Memory, World};
 use petgraph::graph::{DiGraph, NodeIndex};
 use std::path::Path;
 use std::sync::Arc;
@@ -19,7 +22,12 @@ pub struct Settings {
     pub set: Vec<(String, String)>,
     /// Takes the place of the recipe's seed.
     pub seed: Option<u64>,
+    /// Takes the place of the limit on nodes, 200,000 with those inside compounds.
+    pub largest_graph: Option<usize>,
 }
+
+/// Nodes of a recipe that uses compounds.
+const LARGEST_GRAPH: usize = 200_000;
 
 /// A recipe that can be rendered.
 #[derive(Debug)]
@@ -46,7 +54,11 @@ pub fn load(
         vec![diagnostic]
     })?;
     let source = text::decode(path, bytes).map_err(|diagnostic| vec![*diagnostic])?;
-    load_source(KINDS, &source, settings)
+    load_source(
+        &Library::new(KINDS, world, folder_of(path)),
+        &source,
+        settings,
+    )
 }
 
 /// Reads and checks `text` as if it had been read from `path`.
@@ -71,58 +83,184 @@ pub fn load_text_with(
     text: impl Into<String>,
     settings: &Settings,
 ) -> Result<Loaded, Vec<Diagnostic>> {
-    load_source(
-        kinds,
-        &Arc::new(SourceFile::new(path.as_ref(), text)),
-        settings,
-    )
+    let path = path.as_ref();
+    let world = Memory::default();
+    let library = Library::new(kinds, &world, folder_of(path));
+    load_source(&library, &Arc::new(SourceFile::new(path, text)), settings)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
 }
 
 fn load_source(
-    kinds: &[&'static Kind],
+    library: &Library<'_>,
     source: &Arc<SourceFile>,
     settings: &Settings,
 ) -> Result<Loaded, Vec<Diagnostic>> {
     let mut report = Report::new(source);
-    let Some(tree) = text::read(&mut report) else {
+    let files = compound::gather(&mut report, library, source);
+    if files[0].tree.is_none() {
         if !report.has_errors() {
             report_empty(&mut report);
         }
         return Err(report.finish());
-    };
-    let recipe = recipe::read(&mut report, &tree);
-    let (mut parameters, set_problems) =
-        Parameters::read(&mut report, &recipe.parameters, &settings.set);
-    let mut drafts = check::check(&mut report, &recipe, &mut parameters, kinds);
-    let edges = order::edges(&drafts);
-    if let Some(order) = order::sort(&mut report, &drafts, &edges) {
-        domains::resolve(&mut report, &mut drafts, &order);
     }
+    let mut set_problems = vec![];
+    let graph = compound::define(&mut report, library, &files)
+        .filter(|definitions| !report_size(&mut report, definitions, settings))
+        .and_then(|definitions| graph(&mut report, &definitions, settings, &mut set_problems));
     let has_errors = report.has_errors() || !set_problems.is_empty();
-    if !has_errors {
-        order::report_unused(&mut report, &drafts);
-        parameters.report_unused(&mut report);
-    }
     let mut diagnostics = report.finish();
-    if has_errors {
-        diagnostics.splice(0..0, set_problems);
-        return Err(diagnostics);
+    match graph {
+        Some(graph) if !has_errors => Ok(Loaded {
+            graph,
+            warnings: diagnostics,
+        }),
+        _ => {
+            diagnostics.splice(0..0, set_problems);
+            Err(diagnostics)
+        }
     }
-    let graph = Graph {
-        source: Arc::clone(source),
-        about: recipe.about,
-        seed: settings.seed.unwrap_or(recipe.seed),
+}
+
+/// The kind that the compound in `source` is; `None` if something is wrong with it.
+pub(super) fn interface(library: &Library<'_>, source: &Arc<SourceFile>) -> Option<&'static Kind> {
+    let mut report = Report::new(source);
+    let mut files = compound::gather(&mut report, library, source);
+    files[0].role = Role::Compound;
+    compound::define(&mut report, library, &files)?
+        .first()?
+        .kind
+}
+
+/// Whether there are too many nodes, which is then reported: compounds inside compounds multiply.
+fn report_size(report: &mut Report, definitions: &[Definition<'_>], settings: &Settings) -> bool {
+    let limit = settings.largest_graph.unwrap_or(LARGEST_GRAPH);
+    let Definition { layout, recipe, .. } = &definitions[0];
+    if layout.size <= limit || layout.depth == 0 {
+        return false;
+    }
+    let size_of = |slot: &Slot| {
+        slot.inside
+            .map_or(1, |inside| definitions[inside].layout.size)
+    };
+    let nodes = recipe.nodes.iter().zip(&layout.slots);
+    let Some((node, slot)) = nodes.max_by_key(|(_, slot)| size_of(slot)) else {
+        return false;
+    };
+    let counted = |size: usize| match size {
+        usize::MAX => "more nodes than can be counted".to_owned(),
+        size => format!("{size} nodes"),
+    };
+    let (found, largest) = (counted(layout.size), counted(size_of(slot)));
+    let message = format!("the recipe has {found} with those inside its compounds");
+    report.enter(&Origin::of_file(definitions[0].file));
+    report.add(
+        report
+            .error(
+                Code::TooMuch,
+                message,
+                node.span.clone(),
+                format!("holds {largest}"),
+            )
+            .in_node(node.name)
+            .expected(format!("at most {limit} nodes"), found)
+            .hint("use fewer compounds, or allow it with `--max-nodes NUMBER`"),
+    );
+    true
+}
+
+/// The graph of the first definition; `None` if something is wrong with it, which is reported.
+fn graph(
+    report: &mut Report,
+    definitions: &[Definition<'_>],
+    settings: &Settings,
+    set_problems: &mut Vec<Diagnostic>,
+) -> Option<Graph> {
+    let Definition { file, recipe, .. } = &definitions[0];
+    let seed = settings.seed.unwrap_or(recipe.seed);
+    let origin = Arc::new(Origin {
+        seed,
+        ..Origin::of_file(file)
+    });
+    let (parameters, problems) = bound(&definitions[0], settings);
+    *set_problems = problems;
+    let mut expanded = check::check(report, definitions, parameters.clone(), Arc::clone(&origin));
+    expanded.drafts.extend(stand_ins(&definitions[0], &origin));
+    let edges = order::edges(&expanded.drafts);
+    if let Some(order) = order::sort(report, &expanded.drafts, &edges) {
+        domains::resolve(report, &mut expanded, &order);
+    }
+    if report.has_errors() || !set_problems.is_empty() {
+        return None;
+    }
+    order::report_unused(report, &expanded, &outlets(&definitions[0]));
+    for (definition, used) in definitions.iter().zip(&expanded.used) {
+        report.enter(&Origin::of_file(definition.file));
+        definition.interface.report_unused(report, used);
+    }
+    let drafts = &expanded.drafts;
+    Some(Graph {
+        source: Arc::clone(&file.source),
+        about: recipe.about.clone(),
+        seed,
         parameters: parameters.finish(),
-        outputs: indices(&drafts, true).map(|(index, _)| index).collect(),
-        by_name: indices(&drafts, false)
+        outputs: indices(drafts, true).map(|(index, _)| index).collect(),
+        by_name: indices(drafts, false)
             .map(|(index, draft)| (draft.name.to_string(), index))
             .collect(),
-        nodes: with_nodes(&edges, drafts),
-    };
-    Ok(Loaded {
-        graph,
-        warnings: diagnostics,
+        uses: expanded.uses.iter().filter_map(UseDraft::finish).collect(),
+        files: definitions
+            .iter()
+            .map(|one| Arc::clone(&one.file.source))
+            .collect(),
+        is_compound: recipe.role == Role::Compound,
+        nodes: with_nodes(&edges, expanded.drafts)?,
     })
+}
+
+/// What the parameters of a recipe are, or stand-ins for the inputs of a compound that is loaded by itself.
+fn bound(definition: &Definition<'_>, settings: &Settings) -> (Parameters, Vec<Diagnostic>) {
+    let interface = Arc::clone(&definition.interface);
+    let sources = match definition.recipe.role {
+        Role::Recipe => interface
+            .declared
+            .iter()
+            .map(|one| one.default.clone())
+            .collect(),
+        Role::Compound => {
+            let inputs = NodeIndex::new(definition.layout.size);
+            let declared = interface.declared.iter().enumerate();
+            declared
+                .map(|(position, one)| compound::stand_in(one, position, inputs))
+                .collect()
+        }
+    };
+    let mut parameters = Parameters::bound(interface, sources);
+    let problems = parameters.set_all(&settings.set);
+    (parameters, problems)
+}
+
+/// The node that stands for what a compound is given, if it is loaded by itself.
+fn stand_ins(definition: &Definition<'_>, origin: &Arc<Origin>) -> Option<Draft> {
+    Some(Draft {
+        name: "inputs".into(),
+        kind: Some(compound::inputs_kind(definition.kind?)),
+        domain: Some(Domain::Everywhere),
+        ..Draft::empty(origin)
+    })
+}
+
+/// The nodes that the outputs of a compound come from, if it is loaded by itself.
+fn outlets(definition: &Definition<'_>) -> Vec<usize> {
+    let places = definition
+        .outlets
+        .iter()
+        .flatten()
+        .map(|place| place.offset);
+    let inputs = definition.kind.map(|_| definition.layout.size);
+    places.chain(inputs).collect()
 }
 
 /// The outputs, or the nodes that are none.
@@ -132,12 +270,13 @@ fn indices(drafts: &[Draft], are_outputs: bool) -> impl Iterator<Item = (NodeInd
         .map(|(index, draft)| (NodeIndex::new(index), draft))
 }
 
-fn with_nodes(edges: &DiGraph<(), ()>, drafts: Vec<Draft>) -> DiGraph<Node, ()> {
-    let mut nodes = drafts.into_iter().filter_map(Draft::finish);
-    edges.map(
-        |_, ()| nodes.next().expect("a draft without errors is a node"),
+fn with_nodes(edges: &DiGraph<(), ()>, drafts: Vec<Draft>) -> Option<DiGraph<Node, ()>> {
+    let nodes: Option<Vec<Node>> = drafts.into_iter().map(Draft::finish).collect();
+    let mut nodes = nodes?.into_iter();
+    Some(edges.map(
+        |_, ()| nodes.next().expect("there is one for each draft"),
         |_, ()| (),
-    )
+    ))
 }
 
 fn report_empty(report: &mut Report) {
@@ -157,6 +296,13 @@ fn report_empty(report: &mut Report) {
 
 /// The mistake of a recipe that is to be rendered and has no output.
 pub fn no_output(graph: &Graph) -> Diagnostic {
+    if graph.is_compound {
+        let message = "this is a compound: it is rendered where a recipe uses it";
+        let mut diagnostic = Diagnostic::error(Code::NoOutput, message)
+            .hint("use it by the name of its file in a recipe beside its folder `nodes`");
+        diagnostic.source = Some(Arc::clone(&graph.source));
+        return diagnostic;
+    }
     let end = graph.source.text.trim_end().len();
     Diagnostic::error(
         Code::NoOutput,

@@ -7,7 +7,9 @@
 mod arithmetic;
 mod binding;
 mod check;
+mod circles;
 mod composite;
+mod compound;
 mod described;
 mod domains;
 mod lexer;
@@ -17,6 +19,7 @@ mod load;
 mod names;
 mod number;
 mod order;
+mod origin;
 mod parameters;
 mod recipe;
 mod reference;
@@ -26,14 +29,16 @@ mod text;
 mod text_literal;
 mod tree;
 
+pub use compound::{Compound, compounds};
 pub use load::{Loaded, Settings, load, load_text, load_text_with, no_output};
+pub use origin::Origin;
 
 use crate::diagnostics::{SourceFile, Span};
 use crate::node::Kind;
 use crate::value::{Domain, Value};
 use petgraph::graph::{DiGraph, NodeIndex};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A recipe that has been checked.
@@ -51,8 +56,23 @@ pub struct Graph {
     pub nodes: DiGraph<Node, ()>,
     /// The outputs in the order of the file.
     pub outputs: Vec<NodeIndex>,
-    /// Nodes by name.
+    /// Nodes by name; those inside a compound behind the name of its use: `board/planks`.
     pub by_name: BTreeMap<String, NodeIndex>,
+    /// The uses of compounds by name, whose nodes stand in their place.
+    pub uses: BTreeMap<String, CompoundUse>,
+    /// The files it was read from: the recipe, then the compounds it uses.
+    pub files: Vec<Arc<SourceFile>>,
+    /// Whether it is a compound itself, checked with stand-ins for its inputs: it cannot be rendered.
+    pub is_compound: bool,
+}
+
+/// The use of a compound.
+#[derive(Clone, Debug)]
+pub struct CompoundUse {
+    /// The interface of the compound.
+    pub kind: &'static Kind,
+    /// Where its outputs come from, in the order of the interface.
+    pub outputs: Vec<Link>,
 }
 
 impl Graph {
@@ -86,6 +106,8 @@ pub struct Node {
     pub kind: &'static Kind,
     /// Where the name stands.
     pub span: Span,
+    /// The file that the name stands in, and through which uses of compounds it comes into the recipe.
+    pub origin: Arc<Origin>,
     /// One entry for each input of the kind, in its order.
     pub inputs: Vec<Binding>,
     /// Where outputs without a domain of their own are defined.
@@ -108,14 +130,31 @@ pub enum Source {
     Absent,
     /// Known: a literal, a parameter or a default. Files hold their path; the engine reads them.
     Literal(Value),
-    /// A file to be read, relative to the recipe's folder.
-    File(PathBuf),
+    /// A file to be read.
+    File(NamedFile),
     /// An output of another node.
     Link(Link),
     /// Arithmetic over links; what was constant in it is folded.
     Arithmetic(Arithmetic),
     /// Named values, each with a source of its own.
     Channels(Vec<(String, Source)>),
+}
+
+/// A file that an input names.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct NamedFile {
+    /// The folder of the recipe or compound that names it.
+    pub folder: Arc<Path>,
+    /// The path from there, or from the assets there.
+    pub path: PathBuf,
+}
+
+impl NamedFile {
+    /// A file that is named in `source`.
+    fn beside(source: &SourceFile, path: PathBuf) -> NamedFile {
+        let folder = source.path.parent().unwrap_or(Path::new("")).into();
+        NamedFile { folder, path }
+    }
 }
 
 /// An output of a node.

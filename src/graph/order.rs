@@ -1,20 +1,14 @@
 //! The order of nodes: which depends on which, circles, and nodes that no output needs.
 
-use super::check::Draft;
+use super::check::{Draft, Expanded, UseDraft};
 use super::names::shown;
 use super::report::Report;
-use super::{Arithmetic, Link, Source};
+use super::{Arithmetic, Link, Source, circles};
 use crate::diagnostics::Code;
-use petgraph::Direction;
 use petgraph::graph::{DiGraph, NodeIndex};
-use std::collections::VecDeque;
 
 /// Names of a circle that are printed.
 const SHOWN: usize = 10;
-/// Edges that are followed to find the shortest circle; beyond, the shortest so far is reported.
-const STEPS: usize = 4_000_000;
-/// Circles that are reported.
-const CIRCLES: usize = 20;
 
 impl Source {
     /// Every link, in the order of the recipe.
@@ -89,123 +83,14 @@ pub(super) fn sort(
     drafts: &[Draft],
     graph: &DiGraph<(), ()>,
 ) -> Option<Vec<NodeIndex>> {
-    if let Ok(order) = petgraph::algo::toposort(graph, None) {
-        return Some(order);
-    }
-    let mut is_left = vec![true; drafts.len()];
-    let mut steps = STEPS;
-    for _ in 0..CIRCLES {
-        peel(graph, &mut is_left);
-        let Some(circle) = shortest_circle(graph, &is_left, &mut steps) else {
-            break;
-        };
-        report_circle(report, drafts, &circle);
-        circle.iter().for_each(|node| is_left[node.index()] = false);
-    }
-    None
-}
-
-/// Takes away what is in no circle because nothing leads to it or nothing leads from it.
-fn peel(graph: &DiGraph<(), ()>, is_left: &mut [bool]) {
-    for direction in [Direction::Incoming, Direction::Outgoing] {
-        let count = |node: NodeIndex, is_left: &[bool]| {
-            graph
-                .neighbors_directed(node, direction)
-                .filter(|next| is_left[next.index()])
-                .count()
-        };
-        let mut counts: Vec<_> = graph
-            .node_indices()
-            .map(|node| count(node, is_left))
-            .collect();
-        let is_end = |node: &NodeIndex| is_left[node.index()] && counts[node.index()] == 0;
-        let mut ends: Vec<_> = graph.node_indices().filter(is_end).collect();
-        while let Some(node) = ends.pop() {
-            is_left[node.index()] = false;
-            for next in graph.neighbors_directed(node, direction.opposite()) {
-                if is_left[next.index()] {
-                    counts[next.index()] -= 1;
-                    if counts[next.index()] == 0 {
-                        ends.push(next);
-                    }
-                }
-            }
+    match circles::sort(graph) {
+        Ok(order) => Some(order),
+        Err(circles) => {
+            circles
+                .iter()
+                .for_each(|circle| report_circle(report, drafts, circle));
+            None
         }
-    }
-}
-
-/// The shortest circle among the nodes that are left, the first in the file if there are several.
-fn shortest_circle(
-    graph: &DiGraph<(), ()>,
-    is_left: &[bool],
-    steps: &mut usize,
-) -> Option<Vec<NodeIndex>> {
-    let mut best: Option<Vec<NodeIndex>> = None;
-    let mut search = Search {
-        reached_from: vec![None; is_left.len()],
-        reached: vec![],
-    };
-    for start in graph.node_indices().filter(|node| is_left[node.index()]) {
-        let longest = best.as_ref().map_or(usize::MAX, |circle| circle.len() - 1);
-        if best.is_some() && *steps == 0 {
-            break;
-        }
-        if let Some(circle) = search.circle(graph, is_left, start, longest, steps) {
-            best = Some(circle);
-        }
-    }
-    best
-}
-
-/// A search in breadth; what it remembers is used again.
-struct Search {
-    reached_from: Vec<Option<NodeIndex>>,
-    reached: Vec<NodeIndex>,
-}
-
-impl Search {
-    /// The shortest circle through `start`, if it has at most `longest` nodes.
-    fn circle(
-        &mut self,
-        graph: &DiGraph<(), ()>,
-        is_left: &[bool],
-        start: NodeIndex,
-        longest: usize,
-        steps: &mut usize,
-    ) -> Option<Vec<NodeIndex>> {
-        for node in self.reached.drain(..) {
-            self.reached_from[node.index()] = None;
-        }
-        let mut pending = VecDeque::from([(start, 1)]);
-        while let Some((node, length)) = pending.pop_front() {
-            for next in graph.neighbors(node).filter(|next| is_left[next.index()]) {
-                *steps = steps.saturating_sub(1);
-                if next == start {
-                    return Some(self.path(start, node));
-                }
-                if self.reached_from[next.index()].is_none() && length < longest {
-                    self.reached_from[next.index()] = Some(node);
-                    self.reached.push(next);
-                    pending.push_back((next, length + 1));
-                }
-            }
-        }
-        None
-    }
-
-    /// The nodes from `start` to `end`.
-    fn path(&self, start: NodeIndex, end: NodeIndex) -> Vec<NodeIndex> {
-        let mut path = vec![end];
-        let mut node = end;
-        while node != start {
-            let Some(before) = self.reached_from[node.index()] else {
-                break;
-            };
-            path.push(before);
-            node = before;
-        }
-        path.reverse();
-        path
     }
 }
 
@@ -222,6 +107,7 @@ fn report_circle(report: &mut Report, drafts: &[Draft], circle: &[NodeIndex]) {
         names.push(format!(".. ({} nodes in all)", circle.len()));
     }
     names.push(shown(&first.name));
+    report.enter(&first.origin);
     let message = format!(
         "nodes depend on each other in a circle: {}",
         names.join(" -> ")
@@ -239,9 +125,11 @@ fn report_circle(report: &mut Report, drafts: &[Draft], circle: &[NodeIndex]) {
     );
 }
 
-/// Warns about nodes that no output needs, if there are outputs.
-pub(super) fn report_unused(report: &mut Report, drafts: &[Draft]) {
+/// Warns about nodes that neither an output nor one of `wanted` needs, if there are any of these.
+pub(super) fn report_unused(report: &mut Report, expanded: &Expanded, wanted: &[usize]) {
+    let drafts = &expanded.drafts;
     let mut is_needed: Vec<_> = drafts.iter().map(|draft| draft.is_output).collect();
+    wanted.iter().for_each(|index| is_needed[*index] = true);
     let mut pending: Vec<_> = (0..drafts.len())
         .filter(|index| is_needed[*index])
         .collect();
@@ -255,21 +143,18 @@ pub(super) fn report_unused(report: &mut Report, drafts: &[Draft]) {
             }
         }
     }
-    for (draft, _) in drafts
-        .iter()
-        .zip(is_needed)
-        .filter(|(_, is_needed)| !is_needed)
-    {
-        let message = format!("no output needs node {}", shown(&draft.name));
-        report.add(
-            report
-                .warning(
-                    Code::UnusedNode,
-                    message,
-                    draft.span.clone(),
-                    "never evaluated",
-                )
-                .in_node(&*draft.name),
-        );
+    // Of what lies inside compounds each use needs a part.
+    let nodes = drafts.iter().zip(&is_needed);
+    let nodes = nodes.filter(|(draft, is_needed)| !**is_needed && draft.origin.uses.is_none());
+    let nodes = nodes.map(|(draft, _)| (&draft.name, &draft.span, &draft.origin));
+    let is_unused = |one: &&UseDraft| {
+        one.origin.uses.is_none() && !is_needed[one.nodes.clone()].contains(&true)
+    };
+    let uses = expanded.uses.iter().filter(is_unused);
+    for (name, span, origin) in nodes.chain(uses.map(|one| (&one.name, &one.span, &one.origin))) {
+        report.enter(origin);
+        let message = format!("no output needs node {}", shown(name));
+        let warning = report.warning(Code::UnusedNode, message, span.clone(), "never evaluated");
+        report.add(warning.in_node(&**name));
     }
 }

@@ -1,16 +1,23 @@
-//! Collects what is wrong with one text.
+//! Collects what is wrong with a recipe and the compounds it uses.
 
-use crate::diagnostics::{Code, Diagnostic, Severity, SourceFile, Span};
+use super::Origin;
+use crate::diagnostics::{Code, Diagnostic, Severity, SourceFile, Span, Use};
+use std::collections::HashSet;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Mistakes that are kept; beyond, a file is not worth more memory.
 const LIMIT: usize = 2000;
 
-/// What is wrong with one text.
+/// What is wrong with a recipe and the compounds it uses.
 #[derive(Debug)]
 pub(super) struct Report {
-    /// The text.
+    /// The text that is being looked at.
     pub(super) source: Arc<SourceFile>,
+    /// The use of the compound that is being looked at.
+    uses: Option<Arc<Use>>,
+    /// Mistakes in compounds: the second use of one has the same.
+    seen: HashSet<(PathBuf, Code, usize, String)>,
     diagnostics: Vec<Diagnostic>,
     left_out: bool,
 }
@@ -20,9 +27,17 @@ impl Report {
     pub(super) fn new(source: &Arc<SourceFile>) -> Report {
         Report {
             source: Arc::clone(source),
+            uses: None,
+            seen: HashSet::new(),
             diagnostics: vec![],
             left_out: false,
         }
+    }
+
+    /// Goes on where a node comes from.
+    pub(super) fn enter(&mut self, origin: &Origin) {
+        self.source = Arc::clone(&origin.source);
+        self.uses.clone_from(&origin.uses);
     }
 
     /// An error at a place, to be completed and then added.
@@ -33,7 +48,9 @@ impl Report {
         span: Span,
         label: impl Into<String>,
     ) -> Diagnostic {
-        Diagnostic::error(code, message).at(&self.source, span, label)
+        Diagnostic::error(code, message)
+            .at(&self.source, span, label)
+            .used_by(self.uses.clone())
     }
 
     /// A warning at a place, to be completed and then added.
@@ -44,16 +61,46 @@ impl Report {
         span: Span,
         label: impl Into<String>,
     ) -> Diagnostic {
-        Diagnostic::warning(code, message).at(&self.source, span, label)
+        Diagnostic::warning(code, message)
+            .at(&self.source, span, label)
+            .used_by(self.uses.clone())
+    }
+
+    /// Takes over what is wrong with the file of a compound, of which `uses` is a use.
+    pub(super) fn absorb(&mut self, other: Report, uses: &Option<Arc<Use>>) {
+        for diagnostic in other.diagnostics {
+            self.add(diagnostic.used_by(uses.clone()));
+        }
+        self.left_out |= other.left_out;
     }
 
     /// Keeps a diagnostic.
     pub(super) fn add(&mut self, diagnostic: Diagnostic) {
+        if self.is_repeated(&diagnostic) {
+            return;
+        }
         if self.diagnostics.len() < LIMIT {
             self.diagnostics.push(diagnostic);
         } else {
             self.left_out = true;
         }
+    }
+
+    /// Whether another use of the same compound has had the same mistake.
+    fn is_repeated(&mut self, diagnostic: &Diagnostic) -> bool {
+        let (Some(_), Some(source), Some(label)) =
+            (&diagnostic.uses, &diagnostic.source, &diagnostic.label)
+        else {
+            return false;
+        };
+        let path = source.path.clone();
+        let mistake = (
+            path,
+            diagnostic.code,
+            label.span.start,
+            diagnostic.message.clone(),
+        );
+        !self.seen.insert(mistake)
     }
 
     /// Whether nothing more is kept.

@@ -4,6 +4,7 @@
 //! over every kind. Start from `CONTRIBUTING.md`, and from `src/nodes/wood/pattern_lookup.rs`.
 
 mod inputs;
+pub(crate) mod interned;
 
 pub(crate) use inputs::field_of;
 pub use inputs::{Build, Failure, Inputs, common_domain};
@@ -52,6 +53,12 @@ impl Kind {
     /// an input `seed` of their own.
     pub fn draws(&self) -> bool {
         self.input("seed").is_some()
+    }
+
+    /// Whether it is an output of a recipe, as opposed to a node.
+    pub fn gives_maps(&self) -> bool {
+        let first = self.outputs.first();
+        first.is_some_and(|output| output.value_type == Type::Maps)
     }
 
     /// Whether its outputs are structures: built once, cached and stored.

@@ -30,6 +30,12 @@ impl World for Disk {
         Ok(bytes)
     }
 
+    fn list(&self, folder: &Path) -> io::Result<Vec<String>> {
+        let names =
+            fs::read_dir(folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        Ok(names.collect())
+    }
+
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
         let path = behind_links(path)?;
         if path.exists() {

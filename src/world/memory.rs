@@ -37,6 +37,13 @@ impl World for Memory {
         self.lock().get(path).cloned().ok_or_else(not_found)
     }
 
+    fn list(&self, folder: &Path) -> io::Result<Vec<String>> {
+        let files = self.lock();
+        let inside = files.keys().filter(|path| path.parent() == Some(folder));
+        let names = inside.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()));
+        Ok(names.collect())
+    }
+
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
         let bytes = Cursor::new(Vec::new());
         Ok(Box::new(MemoryFile {

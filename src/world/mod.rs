@@ -35,6 +35,15 @@ pub trait World: Send + Sync {
         Ok(bytes)
     }
 
+    /// The names of the files in a folder, in no order; a world without folders has none.
+    ///
+    /// # Errors
+    /// Whatever the operating system says.
+    fn list(&self, folder: &Path) -> io::Result<Vec<String>> {
+        let _ = folder;
+        Ok(vec![])
+    }
+
     /// Starts a file that appears at `path` only when it is committed. Missing folders are made; a
     /// symbolic link at `path` is followed.
     ///

@@ -26,6 +26,23 @@ impl Arithmetic {
         }
     }
 
+    /// Operators above its deepest part, and the number of all parts.
+    pub(super) fn measure(&self) -> (usize, usize) {
+        use Arithmetic::{Binary, Call, Link, Negate, Number};
+        let parts: &[Arithmetic] = match self {
+            Number(_) | Link(_) => return (0, 1),
+            Negate(of) => std::slice::from_ref(of),
+            Binary(_, parts) => &**parts,
+            Call(_, parts) => parts,
+        };
+        parts
+            .iter()
+            .map(Arithmetic::measure)
+            .fold((1, 1), |whole, part| {
+                (whole.0.max(part.0 + 1), whole.1 + part.1)
+            })
+    }
+
     pub(super) fn as_number(&self) -> Option<f64> {
         match self {
             Arithmetic::Number(number) => Some(*number),

@@ -20,6 +20,9 @@ use crate::value::Value;
 /// Operators between the root of an expression and its deepest part.
 const OPERATORS: usize = 256;
 
+/// Parts of the expressions that the inputs of a compound stand for: each level could double them.
+const PASSED: usize = 10_000;
+
 /// An expression and how deep it is.
 type Deep = (Arithmetic, usize);
 
@@ -38,6 +41,7 @@ impl Linker<'_, '_> {
             input,
             at: 1,
             depth: 0,
+            passed: 0,
         };
         let (result, _) = parser.sum()?;
         if parser.peek().is_some() {
@@ -61,6 +65,8 @@ struct Parser<'p, 'c, 's> {
     input: &'p Input,
     at: usize,
     depth: usize,
+    /// Parts of the expressions that the inputs of a compound stand for.
+    passed: usize,
 }
 
 impl Parser<'_, '_, '_> {

@@ -1,11 +1,11 @@
 //! The words of arithmetic: numbers, parameters, links and functions.
 
-use super::{Deep, Parser};
+use super::{Deep, PASSED, Parser};
 use crate::colour::luminance;
 use crate::diagnostics::{Code, Span, nearest};
 use crate::graph::literal::Slot;
 use crate::graph::names::shown;
-use crate::graph::{Arithmetic, Function};
+use crate::graph::{Arithmetic, Function, Source};
 use crate::value::{Type, Value};
 
 impl Parser<'_, '_, '_> {
@@ -46,13 +46,21 @@ impl Parser<'_, '_, '_> {
         let name = &self.text.value[range.clone()];
         let span = self.place(start..range.end);
         let reader = &mut self.linker.reader;
-        let Some(declared) = reader.parameters.refer(name) else {
+        let Some((declared, source)) = reader.parameters.refer(name) else {
             return reader.refuse_unknown_parameter(name, span);
         };
         let value_type = declared.value_type?;
-        match declared.value.as_ref()? {
-            Value::Number(number) => Some((Arithmetic::Number(*number), 0)),
-            Value::Whole(whole) => Some((Arithmetic::Number(*whole as f64), 0)),
+        match source?.clone() {
+            Source::Literal(Value::Number(number)) => Some((Arithmetic::Number(number), 0)),
+            Source::Literal(Value::Whole(whole)) => Some((Arithmetic::Number(whole as f64), 0)),
+            source @ (Source::Link(_) | Source::Arithmetic(_)) if value_type.is_number() => {
+                self.linker.may_vary(name, span, self.input)?;
+                self.passed(source, start)
+            }
+            Source::Absent => self
+                .linker
+                .reader
+                .refuse_left_out(name, span, self.input.name),
             _ => {
                 let message = format!(
                     "expected a number, found parameter {} of type {value_type}",
@@ -65,6 +73,31 @@ impl Parser<'_, '_, '_> {
         }
     }
 
+    /// What the use of a compound gives to an input: a link, or arithmetic of its own.
+    fn passed(&mut self, source: Source, start: usize) -> Option<Deep> {
+        match source {
+            Source::Link(link) => Some((Arithmetic::Link(link), 0)),
+            Source::Arithmetic(expression) => {
+                let (depth, size) = expression.measure();
+                self.passed += size;
+                if self.passed > PASSED {
+                    let message =
+                        format!("arithmetic that compounds pass on has more than {PASSED} parts");
+                    let span = self.place(start..self.at);
+                    return self.linker.reader.refuse(
+                        Code::TooLarge,
+                        message,
+                        span,
+                        "here",
+                        |error| error,
+                    );
+                }
+                Some((expression, self.shallow(depth, start)?))
+            }
+            _ => None,
+        }
+    }
+
     /// A function if parentheses follow, otherwise a link.
     pub(super) fn word(&mut self) -> Option<Deep> {
         let range = self.letters();
@@ -72,7 +105,7 @@ impl Parser<'_, '_, '_> {
             return self.call(range);
         }
         let name = &self.text.value[range.clone()];
-        if Function::from_name(name).is_some() && !self.linker.scope.nodes.contains_key(name) {
+        if Function::from_name(name).is_some() && self.linker.scope.layout.slot(name).is_none() {
             return self.expected(&format!("`(` after {}", shown(name)));
         }
         self.link(range, Type::is_number, self.input.value_type)
@@ -173,10 +206,14 @@ impl Parser<'_, '_, '_> {
             value_type: Type::Colour,
             range: None,
         };
-        let value = self
-            .linker
-            .reader
-            .parameter(&self.text.value[range], span, slot)?;
+        let name = &self.text.value[range];
+        if let Some((_, Some(Source::Link(link)))) = self.linker.reader.parameters.refer(name) {
+            let link = Arithmetic::Link(*link);
+            self.linker.may_vary(name, span.clone(), self.input)?;
+            self.linker.fits(name, span, slot)?;
+            return Some((Arithmetic::Call(Function::Luminance, vec![link]), 1));
+        }
+        let value = self.linker.reader.parameter(name, span, slot)?;
         let Value::Colour(colour) = value else {
             return None;
         };
