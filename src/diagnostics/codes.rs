@@ -56,14 +56,16 @@ codes! {
         "A bracket, a string or a comment is opened and never closed. The message points at the \
          opening, since the place where the end is missing cannot be known.";
     NestedTooDeep, "nested-too-deep",
-        "Brackets inside brackets may go 64 levels deep, in recipes as in arithmetic. No recipe \
-         comes near; a generated file that does should be made of more nodes.";
+        "Brackets inside brackets may go 64 levels deep, in recipes as in arithmetic, and so may \
+         compounds inside compounds. No recipe comes near; a generated file that does should be made of \
+         more nodes.";
     UnknownField, "unknown-field",
-        "A recipe has the fields about, seed, parameters, nodes and outputs; a parameter has default, \
-         range, unit and about, each where its type allows it. Anything else is refused, since it is \
+        "A recipe has the fields about, seed, parameters, nodes and outputs, a compound about, source, \
+         version, inputs, nodes and outputs; a parameter has default, range, unit and about, an input \
+         of a compound also of, per_point, domain and optional, each where its type allows it. Anything else is refused, since it is \
          most likely a misspelt one.";
     MissingField, "missing-field",
-        "A recipe needs the field nodes, and a parameter needs a default. There is nothing sensible to \
+        "A recipe needs the field nodes, a compound an output as well, and a parameter needs a default. There is nothing sensible to \
          assume in their place.";
     DuplicateField, "duplicate-field",
         "A field or an input is written twice in the same parentheses. Which of the two was meant \
@@ -79,7 +81,8 @@ codes! {
         "An output becomes a file, and Windows knows no files called con, prn, aux, nul, com1 to com9 \
          or lpt1 to lpt9. Recipes work on every system, so choose another name.";
     UnknownKind, "unknown-kind",
-        "There is no kind of node by that name. `yosegi nodes` lists them.";
+        "There is no kind of node by that name. `yosegi nodes` lists them. A compound of your own lies in \
+         the folder `nodes` in the recipe's folder or beside it, and has the name of its file.";
     NotANode, "not-a-node",
         "The entry is not `name: kind(inputs)`: a node or an output is always an instance of a \
          kind, and a parameter has one of the parameter types.";
@@ -137,8 +140,8 @@ codes! {
     SelfLink, "self-link",
         "A node takes one of its own outputs as an input.";
     Cycle, "cycle",
-        "Nodes depend on each other in a circle, so none could be evaluated first. The message shows \
-         the shortest circle.";
+        "Nodes depend on each other in a circle, so none could be evaluated first, or a compound contains \
+         itself. The message shows the shortest circle.";
     WrongDomain, "wrong-domain",
         "A solid field is defined at every point of the uncut material, a plane field on a flat \
          piece. The input takes the other one; a cut makes a plane out of a solid.";
@@ -160,7 +163,7 @@ codes! {
         "A map could not be written: the folder does not exist and cannot be made, the disk is full, or \
          the system refused. What was there before is still whole.";
     TooMuch, "too-much",
-        "The maps asked for are larger than the limit on one run. The message names the limit and the \
+        "The maps asked for, or the nodes inside compounds, are more than the limit on one run. The message names the limit and the \
          switch that raises it.";
     NodeFailed, "node-failed",
         "A node could not be built from its inputs although each of them is valid. Nodes that depend \

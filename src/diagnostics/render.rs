@@ -147,10 +147,7 @@ fn uses(diagnostic: &Diagnostic) -> Vec<String> {
     let described = |one: &&Use| {
         let Position { line, column } = one.source.position(one.span.start);
         let path = printed_path(&one.source);
-        format!(
-            "in `{}`, a `{}`: {path}:{line}:{column}",
-            one.node, one.kind
-        )
+        format!("in `{}` (`{}`): {path}:{line}:{column}", one.node, one.kind)
     };
     let mut notes: Vec<_> = chain.iter().map(described).collect();
     if notes.len() > USES {

@@ -4,8 +4,8 @@ use super::event::Listener;
 use super::{Cancel, Engine, RunError};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::field::{Field, Program, Samples, Scratch};
-use crate::graph::Graph;
-use crate::node::field_of;
+use crate::graph::{Graph, Link};
+use crate::node::{Output, field_of};
 use crate::value::{Type, Value};
 use petgraph::graph::NodeIndex;
 
@@ -23,6 +23,7 @@ pub struct SampledField {
 
 impl Engine {
     /// The fields that a node gives: `name` is a node, `node.output`, or for a material `node.channel`.
+    /// The use of a compound counts as a node; nodes inside are behind its name, `board/planks`.
     ///
     /// # Errors
     /// If there is no such node or it gives no fields, or if nodes cannot be built.
@@ -35,20 +36,23 @@ impl Engine {
         let (node, part) = name
             .split_once('.')
             .map_or((name, None), |(node, part)| (node, Some(part)));
-        let index = find(graph, node)?;
-        let plan = self.plan(graph, &[index])?;
+        let outputs = outputs(graph, node)?;
+        let nodes: Vec<NodeIndex> = outputs.iter().map(|(_, link)| link.node).collect();
+        let plan = self.plan(graph, &nodes)?;
         let built = self
             .threads
             .install(|| self.build(&plan, listener, &Cancel::new()))?;
         built.complete()?;
-        let fields = fields_of(graph, index, built.values(index));
+        let value = |link: &Link| &built.values(link.node)[link.output];
+        let values = outputs.iter().map(|(output, link)| (*output, value(link)));
+        let fields = fields_of(values);
         let chosen: Vec<SampledField> = fields
             .iter()
             .filter(|(name, _)| part.is_none_or(|part| part == name))
             .map(|(_, field)| field.clone())
             .collect();
         if chosen.is_empty() {
-            Err(no_fields(graph, index, part, &fields))
+            Err(no_fields(graph, node, part, &fields))
         } else {
             Ok(chosen)
         }
@@ -77,9 +81,23 @@ impl Engine {
     }
 }
 
-fn find(graph: &Graph, name: &str) -> Result<NodeIndex, RunError> {
-    graph.by_name.get(name).copied().ok_or_else(|| {
-        let names = graph.by_name.keys().map(String::as_str);
+/// The outputs of a node or of the use of a compound, and where they come from.
+fn outputs(graph: &Graph, name: &str) -> Result<Vec<(&'static Output, Link)>, RunError> {
+    if let Some(used) = graph.uses.get(name) {
+        let outputs = used.kind.outputs.iter();
+        return Ok(outputs.zip(used.outputs.iter().copied()).collect());
+    }
+    let found = graph.by_name.get(name).map(|node| {
+        let outputs = graph.nodes[*node].kind.outputs.iter().zip(0..);
+        let link = |output| Link {
+            node: *node,
+            output,
+        };
+        outputs.map(|(one, output)| (one, link(output))).collect()
+    });
+    found.ok_or_else(|| {
+        let names = graph.by_name.keys().chain(graph.uses.keys());
+        let names = names.map(String::as_str);
         RunError::Request(vec![
             Diagnostic::error(
                 Code::UnknownNode,
@@ -91,9 +109,11 @@ fn find(graph: &Graph, name: &str) -> Result<NodeIndex, RunError> {
 }
 
 /// The fields among the outputs of a node; those of a material by channel.
-fn fields_of(graph: &Graph, index: NodeIndex, values: &[Value]) -> Vec<(String, SampledField)> {
+fn fields_of<'v>(
+    values: impl Iterator<Item = (&'static Output, &'v Value)>,
+) -> Vec<(String, SampledField)> {
     let mut fields = vec![];
-    for (output, value) in graph.nodes[index].kind.outputs.iter().zip(values) {
+    for (output, value) in values {
         if let Value::Material(material) = value {
             for (channel, field) in &material.channels {
                 let is_colour = field.width() == 3;
@@ -129,23 +149,24 @@ fn sampled(name: &str, field: Field, is_colour: bool) -> SampledField {
 
 fn no_fields(
     graph: &Graph,
-    index: NodeIndex,
+    node: &str,
     part: Option<&str>,
     fields: &[(String, SampledField)],
 ) -> RunError {
-    let node = &graph.nodes[index];
     let names: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
     let message = match part {
-        Some(part) if !names.is_empty() => format!("`{}` gives no field `{part}`", node.name),
-        _ => format!(
-            "`{}` is a `{}`: it gives no field to sample",
-            node.name, node.kind.name
-        ),
+        Some(part) if !names.is_empty() => format!("`{node}` gives no field `{part}`"),
+        _ => format!("`{node}` gives no field to sample"),
     };
     let mut diagnostic = Diagnostic::error(Code::UnknownOutput, message)
-        .at(&node.origin.source, node.span.clone(), "this node")
-        .used_by(node.origin.uses.clone())
+        .in_node(node)
         .nearest(nearest(part.unwrap_or_default(), names.iter().copied()));
+    if let Some(node) = graph.node(node) {
+        let (origin, span) = (&node.origin, node.span.clone());
+        diagnostic = diagnostic
+            .at(&origin.source, span, "this node")
+            .used_by(origin.uses.clone());
+    }
     if !names.is_empty() {
         diagnostic = diagnostic.hint(format!("it gives {}", names.join(", ")));
     }

@@ -137,7 +137,34 @@ pub(super) fn check(
             .parameters
             .add_used(&mut expanded.used[instance.definition]);
     }
+    check_unusable(report, definitions);
     expanded
+}
+
+/// Finds what else is wrong inside compounds that have no interface, so that nothing uses them.
+fn check_unusable(report: &mut Report, definitions: &[Definition<'_>]) {
+    for (index, definition) in definitions.iter().enumerate().skip(1) {
+        if definition.kind.is_some() {
+            continue;
+        }
+        let origin = Arc::new(Origin::of_file(definition.file));
+        let interface = Arc::clone(&definition.interface);
+        let unknown = vec![None; interface.declared.len()];
+        let mut instance = Instance {
+            definition: index,
+            base: 0,
+            prefix: String::new(),
+            parameters: Parameters::bound(interface, unknown),
+            origin: Arc::clone(&origin),
+        };
+        let mut aside = Expanded {
+            drafts: vec![Draft::empty(&origin); definition.recipe.nodes.len()],
+            uses: vec![],
+            used: vec![],
+        };
+        report.enter(&origin);
+        instance.check(report, definitions, definition, &mut aside);
+    }
 }
 
 impl Instance {

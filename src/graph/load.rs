@@ -99,7 +99,9 @@ fn load_source(
     settings: &Settings,
 ) -> Result<Loaded, Vec<Diagnostic>> {
     let mut report = Report::new(source);
-    let files = compound::gather(&mut report, library, source);
+    let Some(files) = compound::gather(&mut report, library, source) else {
+        return Err(report.finish());
+    };
     if files[0].tree.is_none() {
         if !report.has_errors() {
             report_empty(&mut report);
@@ -127,7 +129,7 @@ fn load_source(
 /// The kind that the compound in `source` is; `None` if something is wrong with it.
 pub(super) fn interface(library: &Library<'_>, source: &Arc<SourceFile>) -> Option<&'static Kind> {
     let mut report = Report::new(source);
-    let mut files = compound::gather(&mut report, library, source);
+    let mut files = compound::gather(&mut report, library, source)?;
     files[0].role = Role::Compound;
     compound::define(&mut report, library, &files)?
         .first()?

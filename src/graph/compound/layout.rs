@@ -138,6 +138,10 @@ fn find_kind(
 ) -> Option<&'static Kind> {
     let word = declaration.kind?;
     let Some(kind) = library.native(&word.text) else {
+        if is_output && library.has_compound(&word.text) {
+            report_place(report, declaration, "gives no maps", "nodes");
+            return None;
+        }
         let message = format!("there is no kind {}", shown(&word.text));
         let label = look_alike(&word.text, "no kind has this name");
         report.add(
@@ -155,13 +159,19 @@ fn find_kind(
         } else {
             ("gives maps", "outputs")
         };
-        let message = format!("`{}` {is}, so it belongs under `{belongs}`", kind.name);
-        report.add(
-            report
-                .error(Code::NotAnOutput, message, word.span.clone(), is)
-                .in_node(declaration.name)
-                .hint(format!("move it to `{belongs}`")),
-        );
+        report_place(report, declaration, is, belongs);
     }
     Some(kind)
+}
+
+/// Reports a node among the outputs, or an output among the nodes.
+fn report_place(report: &mut Report, declaration: &Declaration<'_>, is: &str, belongs: &str) {
+    let Some(word) = declaration.kind else { return };
+    let message = format!("`{}` {is}, so it belongs under `{belongs}`", word.text);
+    report.add(
+        report
+            .error(Code::NotAnOutput, message, word.span.clone(), is)
+            .in_node(declaration.name)
+            .hint(format!("move it to `{belongs}`")),
+    );
 }

@@ -9,7 +9,7 @@ use super::{DEPTH, FILES};
 use crate::diagnostics::{Code, Diagnostic, SourceFile, Use, nearest};
 use crate::node::{Kind, interned};
 use crate::world::World;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -75,6 +75,11 @@ impl<'w> Library<'w> {
         nearest(name, fitting.map(|kind| kind.name).chain(compounds))
     }
 
+    /// Whether there is a compound called `name`.
+    pub(super) fn has_compound(&self, name: &str) -> bool {
+        is_name(name) && self.find(name).is_some()
+    }
+
     /// The names of all compounds.
     fn compounds(&self) -> BTreeSet<String> {
         let listed = |folder| self.world.list(folder).unwrap_or_default();
@@ -105,12 +110,12 @@ impl<'w> Library<'w> {
 }
 
 /// The file in `source`, and those of all compounds that it uses; a file that is missing or is no RON is
-/// reported.
+/// reported. `None` if they are nested too deep, which is reported as well.
 pub(in crate::graph) fn gather(
     report: &mut Report,
     library: &Library<'_>,
     source: &Arc<SourceFile>,
-) -> Vec<File> {
+) -> Option<Vec<File>> {
     let tree = text::read(report);
     let stem = source.path.file_stem().unwrap_or_default();
     let mut files = vec![File {
@@ -120,11 +125,11 @@ pub(in crate::graph) fn gather(
         tree,
         first_use: None,
     }];
-    let mut known: HashMap<String, ()> = HashMap::new();
+    let mut known: HashSet<String> = HashSet::new();
     let mut next = 0;
     while next < files.len() {
         for (name, one) in uses(&files[next], library) {
-            if known.insert(name.clone(), ()).is_some() {
+            if !known.insert(name.clone()) {
                 continue;
             }
             let Some(found) = library.find(&name) else {
@@ -132,13 +137,13 @@ pub(in crate::graph) fn gather(
             };
             if files.len() > FILES || one.chain().count() > DEPTH {
                 report_too_many(report, &one);
-                return files;
+                return None;
             }
             files.push(read(report, name, found, Arc::new(one)));
         }
         next += 1;
     }
-    files
+    Some(files)
 }
 
 /// The uses of what is no native kind, in the order of the file.

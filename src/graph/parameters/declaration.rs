@@ -241,7 +241,7 @@ fn check_range(
         true if low > high => format!("{low} is larger than {high}"),
         true => return Some((low, high)),
     };
-    let message = "the range of a parameter is two numbers, the smaller first";
+    let message = "a range is two numbers, the smaller first";
     let span = tree.span.clone();
     report.add(report.error(Code::InvalidRange, message, span, label));
     None
