@@ -10,6 +10,9 @@ use crate::value::{Type, Unit};
 use petgraph::graph::NodeIndex;
 use std::collections::HashMap;
 
+/// Nodes that are looked at for one that gives what an input takes.
+const COMPARED: usize = 5000;
+
 /// What links can lead to.
 #[derive(Debug, Default)]
 pub(super) struct Scope<'t> {
@@ -98,10 +101,9 @@ impl Linker<'_, '_> {
             return self
                 .reader
                 .refuse(Code::UnitMismatch, message, span, label, |error| {
-                    error.expected(expected.symbol(), given.symbol()).hint(
-"units are not converted; arithmetic such as `\"= 2 * node.output\"` is in the \
-                     input's unit",
-                )
+                    error
+                        .expected(expected.symbol(), given.symbol())
+                        .hint(conversion(given))
                 });
         }
         self.refuse_type(found, text, span, Slot::from(input))
@@ -124,18 +126,21 @@ impl Linker<'_, '_> {
         let kind = self.scope.kinds[found.link.node.index()]?;
         let node = text.split('.').next().unwrap_or(text);
         let suits = |output: &&Output| output.value_type == expected;
-        let other = kind
-            .outputs
-            .iter()
-            .find(suits)
-            .map(|output| format!("{node}.{}", output.name));
+        let is_number = |output: &&Output| expected.is_number() && output.value_type.is_number();
+        let outputs = || kind.outputs.iter();
+        let other = outputs().find(suits).or_else(|| outputs().find(is_number));
+        let mut near: Vec<_> = other
+            .map(|output| format!("{node}.{}", output.name))
+            .into_iter()
+            .collect();
+        if near.is_empty() {
+            near = self.giving(expected);
+        }
         let label = format!("gives {given}");
         self.reader
             .refuse(Code::LinkMismatch, message, span, label, |error| {
                 let is_colour = matches!((expected, given), (Type::Number(_), Type::Colour));
-                let mut error = error
-                    .expected(expected, given)
-                    .nearest(other.into_iter().collect());
+                let mut error = error.expected(expected, given).nearest(near);
                 if is_colour && error.nearest.is_empty() {
                     error = error.hint(
                         "make a number of a colour by arithmetic: `\"= luminance(node.colour)\"`",
@@ -143,6 +148,22 @@ impl Linker<'_, '_> {
                 }
                 error
             })
+    }
+
+    /// Up to three links that give `wanted`, of the nodes above this one, the nearest first.
+    fn giving(&self, wanted: Type) -> Vec<String> {
+        let end = self.index.index().min(self.scope.names.len());
+        let above = (0..end).rev().take(COMPARED);
+        let links = above.filter_map(|index| {
+            let outputs = self.scope.kinds.get(index).copied().flatten()?.outputs;
+            let position = outputs.iter().position(|o| o.value_type == wanted)?;
+            let name = self.scope.names[index];
+            Some(match position {
+                0 => name.to_owned(),
+                position => format!("{name}.{}", outputs[position].name),
+            })
+        });
+        links.take(3).collect()
     }
 
     /// Whether the input may vary if the output does.
@@ -223,6 +244,19 @@ impl Linker<'_, '_> {
                     ))
             },
         )
+    }
+}
+
+/// How to get from a unit to that of an input.
+fn conversion(given: Unit) -> &'static str {
+    match given {
+        Unit::One => {
+            "arithmetic without units such as `\"= 2 * node.output\"` is in the input's unit"
+        }
+        _ => {
+            "units are not converted; multiply or divide by a parameter that has a unit, in \
+             arithmetic such as `\"= $scale * node.output\"`"
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What operators and functions make of numbers.
 
-use crate::graph::{Arithmetic, Function, Operator};
+use crate::graph::{Arithmetic, Function, Link, Operator};
 
 impl Arithmetic {
     /// A number, if all parts are numbers.
@@ -23,6 +23,24 @@ impl Arithmetic {
                     .map_or(self, Number)
             }
             _ => self,
+        }
+    }
+
+    /// The number that it gives if `number_of` knows every link.
+    pub fn constant(&self, number_of: &dyn Fn(&Link) -> Option<f64>) -> Option<f64> {
+        let constant = |inner: &Arithmetic| inner.constant(number_of);
+        match self {
+            Arithmetic::Number(number) => Some(*number),
+            Arithmetic::Link(link) => number_of(link),
+            Arithmetic::Negate(of) => Some(-constant(of)?),
+            Arithmetic::Binary(operator, parts) => {
+                let [a, b] = &**parts;
+                Some(operator.apply(constant(a)?, constant(b)?))
+            }
+            Arithmetic::Call(function, arguments) => {
+                let numbers: Option<Vec<f64>> = arguments.iter().map(constant).collect();
+                function.apply(&numbers?)
+            }
         }
     }
 
