@@ -105,6 +105,15 @@ fn a_million_of_anything_is_refused_soon() {
         (format!("r{}\"text", many("#")), Code::Unclosed),
         (format!("\"{}", many("\\u")), Code::Unclosed),
         (format!("[{}]", "1,".repeat(4_000_001)), Code::TooLarge),
+        (many("\"\""), Code::Syntax),
+        (many("\"a\"b"), Code::Syntax),
+        (many("\"a\n\"b"), Code::Unclosed),
+        (many("\"a\\\"\n"), Code::Unclosed),
+        (many("r#\"a\n"), Code::Unclosed),
+        (many("(\n"), Code::NestedTooDeep),
+        (format!("({{{}", many("\"a\": b(\n")), Code::Unclosed),
+        (format!("({{{}", many("\"a\": b())")), Code::Syntax),
+        (format!("({{{}", many("\"a\": b()]\n")), Code::Syntax),
         (many(")"), Code::Syntax),
         (many(";"), Code::Syntax),
         (many(", "), Code::Syntax),
@@ -319,7 +328,10 @@ fn solids_and_planes_do_not_mix() {
         code_of("\"s\": sum(a: \"flat\", b: \"time.branch\"),"),
         mixed
     );
-    assert_eq!(code_of("\"s\": sum(a: \"= flat * time\", b: 1),"), mixed);
+    assert_eq!(
+        code_of("\"s\": sum(a: \"= flat * time.branch\", b: 1),"),
+        mixed
+    );
     assert_eq!(
         code_of("\"s\": sum(a: \"flat\", b: 0, solid: \"time.branch\"),"),
         mixed

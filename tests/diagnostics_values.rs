@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use petgraph::graph::NodeIndex;
 use std::path::Path;
 use yosegi::diagnostics::{SourceFile, render_all};
-use yosegi::graph::{Arithmetic, Function, Graph, Operator, Settings, Source, load_text};
+use yosegi::graph::{Arithmetic, Function, Graph, Link, Operator, Settings, Source, load_text};
 use yosegi::nodes::KINDS;
 use yosegi::value::{Domain, Value};
 
@@ -254,6 +255,60 @@ fn arithmetic_over_links_keeps_its_shape() {
     };
     assert!(matches!(&parts[0], Arithmetic::Call(Function::Luminance, of) if of.len() == 1));
     assert!(matches!(&parts[1], Arithmetic::Link(link) if link.output == 2));
+}
+
+#[test]
+fn units_multiply_and_divide() {
+    for text in [
+        // $height is in mm, $ring_width in mm/year, time in years, look.position is plain.
+        "= $height / 4",
+        "= $ring_width * time",
+        "= $ring_width * (time + 2)",
+        "= 0.05 * look.position",
+        "= $height * look.position - 3",
+        "= sqrt($height * $height)",
+        "= mix($height, 0, look.position)",
+        "= max(1, $height * time / (time + 1))",
+        "= $height * luminance(look.colour)",
+        "= 0.3",
+    ] {
+        let _ = arithmetic(text);
+    }
+}
+
+#[test]
+fn constant_arithmetic_stands_in_parts_and_whole_numbers() {
+    let recipe = RECIPE
+        .replace("at: \"$height\"", "at: \"= $height / 2\"")
+        .replace("size: (140, 900)", "size: (140, \"= $height - 300\")")
+        .replace("texels: \"$texels\"", "texels: \"= 2 * $texels\"")
+        .replace("(0.1, 0.2, 0.3)", "(0.1, \"= 0.1 * 2\", 0.3)");
+    let graph = graph(&recipe, &[]);
+    assert!(literal(&graph, "tree", "branches").contains("Number(600.0)"));
+    assert_eq!(literal(&graph, "board", "size"), "Pair([140.0, 900.0])");
+    assert_eq!(literal(&graph, "bar", "texels"), "Whole(128)");
+    let dark = channel(&graph, "dark");
+    assert!(matches!(
+        dark,
+        Some(Source::Literal(Value::Colour([0.1, 0.2, 0.3])))
+    ));
+}
+
+#[test]
+fn arithmetic_of_known_links_is_a_number() {
+    let link = Link {
+        node: NodeIndex::new(3),
+        output: 0,
+    };
+    let two = || Arithmetic::Number(2.0);
+    let sum = Arithmetic::Binary(Operator::Add, Box::new([two(), Arithmetic::Link(link)]));
+    let negated = Arithmetic::Negate(Box::new(sum));
+    let whole = Arithmetic::Call(Function::Max, vec![negated, Arithmetic::Number(-4.5)]);
+    assert_eq!(whole.constant(&|_| Some(1.0)), Some(-3.0));
+    assert_eq!(
+        whole.constant(&|found| (found.output > 0).then_some(1.0)),
+        None
+    );
 }
 
 #[test]

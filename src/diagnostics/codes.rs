@@ -119,8 +119,10 @@ codes! {
     UnknownUnit, "unknown-unit",
         "A parameter names a unit that no input has. Without a unit it is a plain number.";
     UnitMismatch, "unit-mismatch",
-        "A parameter or a link has another unit than the input. Units are never converted silently; \
-         arithmetic (`\"= 2 * $x\"`) takes numbers as they are and gives the input's unit.";
+        "A parameter, a link or arithmetic has another unit than the input, or arithmetic adds or compares \
+         numbers of different units. Units are never converted silently: multiply or divide by a \
+         parameter that has a unit. Numbers written out in arithmetic take the unit of what they are \
+         added to, and arithmetic without any unit has that of its input.";
     UnknownParameter, "unknown-parameter",
         "A `$name` in the recipe or a `--set name=value` names a parameter that the recipe does not \
          declare. In text, a dollar sign at the beginning is written `$$`.";
@@ -132,8 +134,8 @@ codes! {
     LinkMismatch, "link-mismatch",
         "A link leads to an output of another type than the input takes.";
     LinkNotAllowed, "link-not-allowed",
-        "Links and arithmetic stand for a whole input. Inside a list, a tuple or a record, and where \
-         a name is chosen, only literals and parameters are allowed.";
+        "Links stand for a whole input. Inside a list, a tuple or a record, and where a name is chosen, \
+         only literals and parameters are allowed, and arithmetic over numbers and parameters.";
     NotConstant, "not-constant",
         "The input must be known before anything is evaluated, and what is linked differs from \
          point to point.";

@@ -49,10 +49,15 @@ impl SourceFile {
             .rev()
             .find(is_boundary)
             .unwrap_or(0);
-        let line = self.line_starts.partition_point(|start| *start <= byte);
+        let line = self.line_of(byte);
         let before = &self.text[self.line_starts[line - 1]..byte];
         let column = 1 + before.trim_start_matches('\u{feff}').chars().count();
         Position { line, column }
+    }
+
+    /// The line of a byte, counted from 1.
+    pub(crate) fn line_of(&self, byte: usize) -> usize {
+        self.line_starts.partition_point(|start| *start <= byte)
     }
 
     /// The bytes of a line, counted from 1, without what ends it.

@@ -292,6 +292,9 @@ impl Resolver<'_> {
                 if !links_are_built(expression, self.built) {
                     return None;
                 }
+                if let Some(number) = expression.constant(&|link| self.number(link)) {
+                    return Some(Some(Value::Number(number)));
+                }
                 let linked = |link: &Link| self.field(link);
                 Some(Value::Field(arithmetic::field(
                     &self.node.name,
@@ -312,6 +315,14 @@ impl Resolver<'_> {
     fn field(&self, link: &Link) -> Field {
         field_of(&self.built.values(link.node)[link.output])
             .expect("checking the recipe has ruled out other links in arithmetic")
+    }
+
+    /// What a link gives if it is the same everywhere.
+    fn number(&self, link: &Link) -> Option<f64> {
+        match &self.built.values(link.node)[link.output] {
+            Value::Number(number) => Some(*number),
+            _ => None,
+        }
     }
 
     /// What the node is made of: its kind, its literals, and the content of what it links to.

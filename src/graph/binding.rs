@@ -8,7 +8,7 @@ use super::recipe::{key, report_duplicate_name};
 use super::text_literal::TextLiteral;
 use super::tree::{Shape, Tree};
 use super::{Binding, NamedFile, Source};
-use crate::diagnostics::{Code, Span};
+use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::node::{Input, Presence};
 use crate::value::{Type, Unit, Value};
 use std::collections::HashMap;
@@ -71,7 +71,8 @@ impl Linker<'_, '_> {
         }
         match (text.value.strip_prefix('='), input.value_type) {
             (None, _) => self.link(&text.value, tree.span.clone(), input),
-            (Some(_), Type::Number(_)) => self.arithmetic(tree, text, input),
+            (Some(_), Type::Number(_)) => self.arithmetic(tree, text, input, slot),
+            (Some(_), Type::Whole) => self.reader.literal(tree, slot).map(Source::Literal),
             (Some(_), expected) => {
                 let name = shown(input.name);
                 let message = format!("expected {expected} for {name}, found arithmetic");
@@ -81,7 +82,7 @@ impl Linker<'_, '_> {
                     message,
                     span,
                     "gives a number",
-                    |error| error.expected(expected, "arithmetic"),
+                    |error| arithmetic_in_parts(error.expected(expected, "arithmetic"), expected),
                 )
             }
         }
@@ -156,7 +157,7 @@ impl Linker<'_, '_> {
             return self.reader.literal(tree, colour).map(Source::Literal);
         }
         if text.value.starts_with('=') {
-            return self.arithmetic(tree, text, input);
+            return self.arithmetic(tree, text, input, colour.of(input.value_type));
         }
         let found = self.find(&text.value, tree.span.clone())?;
         if !matches!(found.output.value_type, Type::Number(_) | Type::Colour) {
@@ -209,5 +210,14 @@ impl Reader<'_> {
                 )
                 .hint("write a path such as `photos/bar.png`, with forward slashes")
         })
+    }
+}
+
+fn arithmetic_in_parts(error: Diagnostic, expected: Type) -> Diagnostic {
+    match expected {
+        Type::Vector(_) | Type::Pair(_) | Type::Colour => {
+            error.hint("write arithmetic for each part: `(\"= 2 * $x\", ..)`")
+        }
+        _ => error,
     }
 }

@@ -34,6 +34,14 @@ impl Tree {
     }
 }
 
+/// A number, in powers of ten where it would be long.
+pub(super) fn described_number(number: f64) -> String {
+    match number.abs() {
+        0.0 | 1e-5..1e15 => number.to_string(),
+        _ => format!("{number:e}"),
+    }
+}
+
 /// The unit of a number, in words.
 pub(super) fn described_unit(unit: Unit) -> String {
     match unit {

@@ -1,7 +1,7 @@
 //! Tokens of a recipe, with the bytes they cover.
 
 use super::report::Report;
-use super::text_literal::{self, TextLiteral};
+use super::text_literal::{self, Found, TextLiteral};
 use crate::diagnostics::{Code, Span};
 
 /// The three sorts of brackets.
@@ -66,8 +66,12 @@ pub(super) struct Token {
 pub(super) struct Lexer<'t> {
     text: &'t str,
     at: usize,
-    /// Whether a string or a comment was not closed, so that it took the rest of the file.
+    /// Whether a string or a comment was not closed, so that brackets may be missing.
     pub(super) found_unclosed: bool,
+    /// Whether one of them went on to the end of the file.
+    took_rest: bool,
+    /// From unclosed strings to the ends of their lines: what is wrong there is explained by them.
+    explained: Vec<Span>,
 }
 
 impl<'t> Lexer<'t> {
@@ -78,6 +82,8 @@ impl<'t> Lexer<'t> {
             text,
             at,
             found_unclosed: false,
+            took_rest: false,
+            explained: vec![],
         };
         lexer.skip_space(report);
         while lexer.skip_attribute(report) {}
@@ -122,11 +128,10 @@ impl<'t> Lexer<'t> {
         }
         if let Some(found) = text_literal::read(rest) {
             let start = self.at;
-            self.at += found.length;
-            if !found.is_closed {
-                self.found_unclosed = true;
-                report.add(unclosed(report, start..start + found.opening, "string"));
-            }
+            self.at += match found.is_closed {
+                true => found.length,
+                false => self.refuse_unclosed(report, &found),
+            };
             let text = |literal: TextLiteral| TokenKind::Text(literal.moved(start));
             return Some(found.literal.map_or(TokenKind::Other, text));
         }
@@ -142,6 +147,42 @@ impl<'t> Lexer<'t> {
         }
         self.refuse(report);
         None
+    }
+
+    /// Reports an unclosed string; gives the bytes that are taken for it.
+    fn refuse_unclosed(&mut self, report: &mut Report, found: &Found) -> usize {
+        let start = self.at;
+        let opening = start..start + found.opening;
+        let is_explained = self.is_explained(start);
+        if !is_explained {
+            report.add(unclosed(report, opening, "string"));
+        }
+        self.found_unclosed = true;
+        // To look through the rest again and again would take long.
+        if found.takes_rest && std::mem::replace(&mut self.took_rest, true) {
+            return found.length;
+        }
+        let rest = self.rest();
+        let line = rest.find(['\n', '\r']).unwrap_or(rest.len());
+        self.explained.push(start..start + line + 1);
+        let length = text_literal::likely_length(rest, found.opening);
+        let is_closed_otherwise = rest[length..].starts_with('"');
+        length + usize::from(is_closed_otherwise && found.opening > 1)
+    }
+
+    /// Whether a mistake at `byte` follows from an unclosed string before it on the line.
+    pub(super) fn is_explained(&self, byte: usize) -> bool {
+        let next = self.explained.partition_point(|line| line.start <= byte);
+        next > 0 && self.explained[next - 1].contains(&byte)
+    }
+
+    /// Whether a bracket at `byte` may be unclosed since a string behind it on its line is.
+    pub(super) fn explains_bracket(&self, byte: usize) -> bool {
+        let next = self.explained.partition_point(|line| line.start < byte);
+        self.explained.get(next).is_some_and(|line| {
+            let between = self.text.get(byte..line.start).unwrap_or("\n");
+            !between.contains(['\n', '\r'])
+        })
     }
 
     /// A number, unless it begins a range such as `0..5`.
@@ -170,6 +211,9 @@ impl<'t> Lexer<'t> {
             .map_or(rest.len(), |(at, _)| at);
         let start = self.at;
         self.at += length;
+        if self.is_explained(start) {
+            return;
+        }
         let letter = rest.chars().next().unwrap_or(' ');
         let shown = super::names::shown_letter(letter);
         let message = format!("expected a value, a name or a bracket, found {shown}");

@@ -10,6 +10,9 @@ use crate::node::{Input, Kind, Output, Varies};
 use crate::value::{Type, Unit};
 use petgraph::graph::NodeIndex;
 
+/// Nodes that are looked at for one that gives what an input takes.
+const COMPARED: usize = 5000;
+
 /// What links can lead to: the nodes of one file, from an index on.
 #[derive(Debug)]
 pub(super) struct Scope<'t> {
@@ -98,10 +101,9 @@ impl Linker<'_, '_> {
             return self
                 .reader
                 .refuse(Code::UnitMismatch, message, span, label, |error| {
-                    error.expected(expected.symbol(), given.symbol()).hint(
-"units are not converted; arithmetic such as `\"= 2 * node.output\"` is in the \
-                     input's unit",
-                )
+                    error
+                        .expected(expected.symbol(), given.symbol())
+                        .hint(conversion(given))
                 });
         }
         self.refuse_type(found, text, span, Slot::from(input))
@@ -123,19 +125,21 @@ impl Linker<'_, '_> {
         );
         let node = text.split('.').next().unwrap_or(text);
         let suits = |output: &&Output| output.value_type == expected;
-        let other = found
-            .kind
-            .outputs
-            .iter()
-            .find(suits)
-            .map(|output| format!("{node}.{}", output.name));
+        let is_number = |output: &&Output| expected.is_number() && output.value_type.is_number();
+        let outputs = || found.kind.outputs.iter();
+        let other = outputs().find(suits).or_else(|| outputs().find(is_number));
+        let mut near: Vec<_> = other
+            .map(|output| format!("{node}.{}", output.name))
+            .into_iter()
+            .collect();
+        if near.is_empty() {
+            near = self.giving(expected);
+        }
         let label = format!("gives {given}");
         self.reader
             .refuse(Code::LinkMismatch, message, span, label, |error| {
                 let is_colour = matches!((expected, given), (Type::Number(_), Type::Colour));
-                let mut error = error
-                    .expected(expected, given)
-                    .nearest(other.into_iter().collect());
+                let mut error = error.expected(expected, given).nearest(near);
                 if is_colour && error.nearest.is_empty() {
                     error = error.hint(
                         "make a number of a colour by arithmetic: `\"= luminance(node.colour)\"`",
@@ -143,6 +147,28 @@ impl Linker<'_, '_> {
                 }
                 error
             })
+    }
+
+    /// Up to three links that give `wanted`, of the nodes above this one, the nearest first.
+    fn giving(&self, wanted: Type) -> Vec<String> {
+        let layout = self.scope.layout;
+        let nodes = layout.names.iter().zip(&layout.slots);
+        let own = self.index.index();
+        let above = nodes.take_while(|(_, slot)| self.scope.base + slot.offset < own);
+        let above: Vec<_> = above.collect();
+        let links = above
+            .into_iter()
+            .rev()
+            .take(COMPARED)
+            .filter_map(|(name, slot)| {
+                let outputs = slot.kind?.outputs;
+                let position = outputs.iter().position(|o| o.value_type == wanted)?;
+                Some(match position {
+                    0 => (*name).to_owned(),
+                    position => format!("{name}.{}", outputs[position].name),
+                })
+            });
+        links.take(3).collect()
     }
 
     /// Whether the input may vary if the output does.
@@ -224,6 +250,19 @@ impl Linker<'_, '_> {
                     ))
             },
         )
+    }
+}
+
+/// How to get from a unit to that of an input.
+fn conversion(given: Unit) -> &'static str {
+    match given {
+        Unit::One => {
+            "arithmetic without units such as `\"= 2 * node.output\"` is in the input's unit"
+        }
+        _ => {
+            "units are not converted; multiply or divide by a parameter that has a unit, in \
+             arithmetic such as `\"= $scale * node.output\"`"
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Literals: values that a recipe writes out, read as the type of their input.
 
-use super::described::described_range;
+use super::described::{described_number, described_range};
 use super::names::shown;
 use super::number::{self, Written};
 use super::parameters::Parameters;
@@ -130,6 +130,9 @@ impl<'c> Reader<'c> {
             Shape::Name(name) if name.starts_with("inf") || name.starts_with("NaN") => {
                 Some(f64::INFINITY)
             }
+            Shape::Text(text) if text.value.starts_with('=') => {
+                return self.constant_arithmetic(tree, text, slot);
+            }
             Shape::Text(_) => return self.refuse_link(tree, slot),
             _ => return self.mismatch(tree, slot),
         };
@@ -156,6 +159,7 @@ impl<'c> Reader<'c> {
         match slot.range {
             Some((low, high)) if number < low || number > high => {
                 let range = described_range((low, high));
+                let number = described_number(number);
                 let message = format!("{name} must be {range}, found {number}");
                 self.refuse(
                     Code::OutOfRange,
@@ -189,9 +193,30 @@ impl<'c> Reader<'c> {
                 }
                 _ => self.mismatch(tree, slot),
             },
+            Shape::Text(text) if text.value.starts_with('=') => {
+                let number = self.constant_arithmetic(tree, text, slot)?;
+                self.whole_of(number, tree.span.clone(), slot)
+            }
             Shape::Text(_) => self.refuse_link(tree, slot),
             _ => self.mismatch(tree, slot),
         }
+    }
+
+    /// The whole number that arithmetic gives, if it gives one.
+    fn whole_of(&mut self, number: f64, span: Span, slot: Slot<'_>) -> Option<i64> {
+        // Beyond 2^53 not every whole number is a 64-bit float.
+        if number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0 {
+            return Some(number as i64);
+        }
+        let number = described_number(number);
+        let message = format!(
+            "expected a whole number for {}, found arithmetic that gives {number}",
+            shown(slot.name)
+        );
+        let label = format!("gives {number}");
+        self.refuse(Code::TypeMismatch, message, span, label, |error| {
+            error.expected("a whole number", number)
+        })
     }
 
     fn toggle(&mut self, tree: &Tree, slot: Slot<'_>) -> Option<Value> {

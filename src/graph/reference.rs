@@ -27,20 +27,12 @@ impl Linker<'_, '_> {
             }
             source => {
                 let source = source.clone();
-                Some(self.fits(name, tree.span.clone(), slot).map(|()| source))
+                Some(
+                    self.reader
+                        .fits(name, tree.span.clone(), slot)
+                        .map(|()| source),
+                )
             }
-        }
-    }
-
-    /// Whether the declared type of an input suits the slot.
-    pub(super) fn fits(&mut self, name: &str, span: Span, slot: Slot<'_>) -> Option<()> {
-        let given = self.reader.parameters.refer(name)?.0.value_type?;
-        if given == slot.value_type {
-            return Some(());
-        }
-        match units(slot.value_type, given) {
-            Some((wanted, given)) => self.reader.refuse_unit(name, span, slot, (given, wanted)),
-            None => self.reader.refuse_parameter(name, span, slot, given),
         }
     }
 
@@ -80,6 +72,18 @@ impl Linker<'_, '_> {
 }
 
 impl Reader<'_> {
+    /// Whether the declared type of an input suits the slot.
+    pub(super) fn fits(&mut self, name: &str, span: Span, slot: Slot<'_>) -> Option<()> {
+        let given = self.parameters.refer(name)?.0.value_type?;
+        if given == slot.value_type {
+            return Some(());
+        }
+        match units(slot.value_type, given) {
+            Some((wanted, given)) => self.refuse_unit(name, span, slot, (given, wanted)),
+            None => self.refuse_parameter(name, span, slot, given),
+        }
+    }
+
     /// The value of a parameter, if it suits the input.
     pub(super) fn parameter(&mut self, name: &str, span: Span, slot: Slot<'_>) -> Option<Value> {
         let Some((declared, source)) = self.parameters.refer(name) else {
@@ -181,7 +185,7 @@ impl Reader<'_> {
     }
 
     /// Reports an input that the use of a compound links, where only a literal can stand.
-    fn refuse_passed<T>(&mut self, name: &str, span: Span, slot: Slot<'_>) -> Option<T> {
+    pub(super) fn refuse_passed<T>(&mut self, name: &str, span: Span, slot: Slot<'_>) -> Option<T> {
         let message = format!(
             "expected a constant {} in {}, found {}, which is linked",
             slot.value_type,

@@ -103,6 +103,16 @@ impl Report {
         !self.seen.insert(mistake)
     }
 
+    /// Leaves out all but the first on each line: what is read behind a mistake is often misread.
+    pub(super) fn keep_first_of_lines(&mut self) {
+        crate::diagnostics::sort(&mut self.diagnostics);
+        let source = &self.source;
+        self.diagnostics.dedup_by_key(|one| {
+            let start = one.label.as_ref().map_or(0, |label| label.span.start);
+            source.line_of(start)
+        });
+    }
+
     /// Whether nothing more is kept.
     pub(super) fn is_full(&self) -> bool {
         self.left_out

@@ -2,6 +2,9 @@
 
 use crate::diagnostics::Span;
 
+/// Bytes behind a string that are looked at for other strings.
+const LONGEST_LINE: usize = 1000;
+
 /// Text in quotes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct TextLiteral {
@@ -28,8 +31,10 @@ pub(super) struct Found {
     pub(super) length: usize,
     /// Bytes of what opens it.
     pub(super) opening: usize,
-    /// Whether its end was found.
+    /// Whether its end was found, and stands where a string can end.
     pub(super) is_closed: bool,
+    /// Whether no end was found up to the end of the file.
+    pub(super) takes_rest: bool,
     /// The text; `None` for bytes and characters.
     pub(super) literal: Option<TextLiteral>,
 }
@@ -59,15 +64,54 @@ fn plain(text: &str) -> Found {
     while at < bytes.len() && bytes[at] != b'"' {
         at += if bytes[at] == b'\\' { 2 } else { 1 };
     }
-    let is_closed = at < bytes.len();
-    let content = if is_closed { &text[1..at] } else { &text[1..] };
-    let length = if is_closed { at + 1 } else { text.len() };
+    let takes_rest = at >= bytes.len();
+    let content = if takes_rest { &text[1..] } else { &text[1..at] };
+    let length = if takes_rest { text.len() } else { at + 1 };
     Found {
         length,
         opening: 1,
-        is_closed,
+        is_closed: !takes_rest && ends_well(content, &text[length..]),
+        takes_rest,
         literal: Some(literal(content, 1, unescape)),
     }
+}
+
+/// Whether a string can end where `rest` begins. If a quotation mark was forgotten, strings begin where
+/// others end: the next one that is closed has letters right behind it, or begins a line further down.
+fn ends_well(content: &str, rest: &str) -> bool {
+    let Some(next) = rest.chars().next() else {
+        return true;
+    };
+    if next.is_whitespace() || ",)]}/".contains(next) {
+        return true;
+    }
+    // No name goes over several lines.
+    if content.contains(['\n', '\r']) {
+        return false;
+    }
+    let bytes = rest.bytes().take(LONGEST_LINE);
+    let line = bytes.take_while(|byte| !matches!(byte, b'\n' | b'\r'));
+    let (length, marks) = line.fold((0, 0), |(length, marks), byte| {
+        (length + 1, marks + usize::from(byte == b'"'))
+    });
+    next == ':' || length == LONGEST_LINE || marks % 2 == 0
+}
+
+/// The part of an unclosed string that is most likely meant: up to what cannot be in a link or a name, or
+/// to the end of the line.
+pub(super) fn likely_length(text: &str, opening: usize) -> usize {
+    let line = text[opening..].split(['\n', '\r']).next().unwrap_or("");
+    let mut depth = 0_usize;
+    for (at, letter) in line.char_indices() {
+        match letter {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' if depth > 0 => depth -= 1,
+            ')' | ']' | '}' | '"' => return opening + at,
+            ',' | ':' if depth == 0 => return opening + at,
+            _ => {}
+        }
+    }
+    opening + line.len()
 }
 
 /// `r"..."` or `r#"..."#` with any number of `#`.
@@ -86,6 +130,7 @@ fn raw(text: &str) -> Option<Found> {
         length,
         opening,
         is_closed: end.is_some(),
+        takes_rest: end.is_none(),
         literal,
     })
 }
@@ -103,6 +148,7 @@ fn character(text: &str) -> Option<Found> {
         length: end + 1,
         opening: 1,
         is_closed: true,
+        takes_rest: false,
         literal: None,
     })
 }
@@ -207,11 +253,24 @@ mod tests {
     }
 
     #[test]
+    fn a_string_does_not_end_where_another_begins() {
+        let is_closed = |text: &str| read(text).unwrap().is_closed;
+        assert!(!is_closed("\"look),\n\"wood\": material()"));
+        assert!(!is_closed("\"look, height: \"= 2\"),\n"));
+        assert!(is_closed("\"two\nlines\", next: \"a\""));
+        assert!(is_closed("\"two\nlines\" nodes: {"));
+        assert!(is_closed("\"one\"nodes"));
+        assert_eq!(likely_length("\"look),\n", 1), 5);
+        assert_eq!(likely_length("\"= max(1, 2), a: 3", 1), 12);
+        assert_eq!(likely_length("r#\"#c8a06e\"),", 3), 10);
+    }
+
+    #[test]
     fn what_is_not_closed_takes_the_rest() {
         for text in ["\"abc", "\"abc\\", "r##\"abc\"#", "b\"", "\"\\\u{e4}"] {
             let found = read(text).unwrap();
             assert!(!found.is_closed, "{text}");
-            assert_eq!(found.length, text.len());
+            assert!(found.takes_rest && found.length == text.len());
         }
         assert!(read("'").is_none() && read("'abc").is_none() && read("r#name").is_none());
     }

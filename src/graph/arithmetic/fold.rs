@@ -1,6 +1,6 @@
 //! What operators and functions make of numbers.
 
-use crate::graph::{Arithmetic, Function, Operator};
+use crate::graph::{Arithmetic, Function, Link, Operator};
 
 impl Arithmetic {
     /// A number, if all parts are numbers.
@@ -26,6 +26,24 @@ impl Arithmetic {
         }
     }
 
+    /// The number that it gives if `number_of` knows every link.
+    pub fn constant(&self, number_of: &dyn Fn(&Link) -> Option<f64>) -> Option<f64> {
+        let constant = |inner: &Arithmetic| inner.constant(number_of);
+        match self {
+            Arithmetic::Number(number) => Some(*number),
+            Arithmetic::Link(link) => number_of(link),
+            Arithmetic::Negate(of) => Some(-constant(of)?),
+            Arithmetic::Binary(operator, parts) => {
+                let [a, b] = &**parts;
+                Some(operator.apply(constant(a)?, constant(b)?))
+            }
+            Arithmetic::Call(function, arguments) => {
+                let numbers: Option<Vec<f64>> = arguments.iter().map(constant).collect();
+                function.apply(&numbers?)
+            }
+        }
+    }
+
     /// Operators above its deepest part, and the number of all parts.
     pub(super) fn measure(&self) -> (usize, usize) {
         use Arithmetic::{Binary, Call, Link, Negate, Number};
@@ -35,12 +53,10 @@ impl Arithmetic {
             Binary(_, parts) => &**parts,
             Call(_, parts) => parts,
         };
-        parts
-            .iter()
-            .map(Arithmetic::measure)
-            .fold((1, 1), |whole, part| {
-                (whole.0.max(part.0 + 1), whole.1 + part.1)
-            })
+        let parts = parts.iter().map(Arithmetic::measure);
+        parts.fold((1, 1), |(depth, size), part| {
+            (depth.max(part.0 + 1), size + part.1)
+        })
     }
 
     pub(super) fn as_number(&self) -> Option<f64> {

@@ -1,55 +1,69 @@
 //! Arithmetic in strings: `"= 0.03 * look.position + $height"`.
 //!
-//! Numbers, `$parameters`, links, `+ - * /` with the usual precedence, parentheses and functions. Numbers
-//! are taken as they are: the result is in the unit of the input. What is constant is folded.
+//! **What it may hold.** Numbers, `$parameters`, links to numbers, `+ - * /` with the usual precedence
+//! and from left to right, a minus sign, parentheses, and `min(a, b)`, `max(a, b)`, `abs(a)`, `sqrt(a)`,
+//! `clamp(a, low, high)`, `mix(a, b, amount)` and `luminance(colour)`.
+//!
+//! **Where it may stand.** In place of a number. What is made of numbers and parameters only is constant:
+//! it is computed when the recipe is read and can stand in any number and any whole number, also within
+//! a vector, a list or a record. What holds links stands for a whole input: for a constant input the
+//! links have to be constant as well, an input per point takes links that differ from point to point.
+//!
+//! **Units.** `*` and `/` multiply and divide units, `sqrt` takes the root of the unit; `+`, `-`, `min`,
+//! `max`, `clamp`, and the first two of `mix` need one unit, which is that of the result; the amount of
+//! `mix` is a plain number, and so is `luminance`. Numbers that are written out, and what is made of them
+//! alone, take the unit of what they are added to or compared with; in products they are plain. The
+//! whole has to have the unit of its input; if no unit occurs in it anywhere, it is taken to be in the
+//! unit of the input: `"= 0.05 * look.position"` is a height in mm. Units are never converted: to get
+//! from years to millimetres, multiply by a parameter in mm/year.
+//!
+//! **Results** have to be finite. The square root of a negative number is 0.
 
+mod calls;
 mod fold;
+mod mistakes;
+mod units;
 mod words;
 
 use super::links::Linker;
-use super::literal::Slot;
-use super::names::shown;
+use super::literal::{Reader, Slot};
 use super::syntax::DEPTH;
 use super::text_literal::TextLiteral;
 use super::tree::Tree;
 use super::{Arithmetic, Operator, Source};
 use crate::diagnostics::{Code, Span};
 use crate::node::Input;
-use crate::value::Value;
+use crate::value::{Type, Unit, Value};
+use units::Quantity;
 
 /// Operators between the root of an expression and its deepest part.
 const OPERATORS: usize = 256;
-
 /// Parts of the expressions that the inputs of a compound stand for: each level could double them.
 const PASSED: usize = 10_000;
 
-/// An expression and how deep it is.
-type Deep = (Arithmetic, usize);
+/// A part of an expression.
+#[derive(Debug)]
+struct Part {
+    expression: Arithmetic,
+    /// Operators to its deepest part.
+    depth: usize,
+    quantity: Quantity,
+    /// Where it stands in the text.
+    bytes: Span,
+}
 
 impl Linker<'_, '_> {
-    /// The arithmetic that `text` holds behind its `=`.
+    /// What the arithmetic in `text` gives for an input, or for the part of it that `slot` describes.
     pub(super) fn arithmetic(
         &mut self,
         tree: &Tree,
         text: &TextLiteral,
         input: &Input,
+        slot: Slot<'_>,
     ) -> Option<Source> {
-        let mut parser = Parser {
-            linker: self,
-            tree,
-            text,
-            input,
-            at: 1,
-            depth: 0,
-            passed: 0,
-        };
-        let (result, _) = parser.sum()?;
-        if parser.peek().is_some() {
-            return parser.expected("an operator or the end");
-        }
-        match result {
+        let mut parser = Parser::new(Context::Input(self, input), tree, text, slot);
+        match parser.whole()? {
             Arithmetic::Number(number) => {
-                let slot = Slot::from(input);
                 let number = self.reader.in_range(number, tree.span.clone(), slot)?;
                 Some(Source::Literal(Value::Number(number)))
             }
@@ -58,18 +72,80 @@ impl Linker<'_, '_> {
     }
 }
 
+impl Reader<'_> {
+    /// The number that arithmetic without links gives.
+    pub(super) fn constant_arithmetic(
+        &mut self,
+        tree: &Tree,
+        text: &TextLiteral,
+        slot: Slot<'_>,
+    ) -> Option<f64> {
+        let result = Parser::new(Context::Constant(self), tree, text, slot).whole()?;
+        self.in_range(result.as_number()?, tree.span.clone(), slot)
+    }
+}
+
+/// Where the expression stands.
+enum Context<'p, 'c, 's> {
+    /// In place of an input, where links are allowed.
+    Input(&'p mut Linker<'c, 's>, &'p Input),
+    /// In place of a part, where only numbers and parameters are.
+    Constant(&'p mut Reader<'c>),
+}
+
 struct Parser<'p, 'c, 's> {
-    linker: &'p mut Linker<'c, 's>,
+    context: Context<'p, 'c, 's>,
     tree: &'p Tree,
     text: &'p TextLiteral,
-    input: &'p Input,
+    slot: Slot<'p>,
     at: usize,
     depth: usize,
     /// Parts of the expressions that the inputs of a compound stand for.
     passed: usize,
 }
 
-impl Parser<'_, '_, '_> {
+impl<'p, 'c, 's> Parser<'p, 'c, 's> {
+    fn new(
+        context: Context<'p, 'c, 's>,
+        tree: &'p Tree,
+        text: &'p TextLiteral,
+        slot: Slot<'p>,
+    ) -> Self {
+        Parser {
+            context,
+            tree,
+            text,
+            slot,
+            // Behind the `=`.
+            at: 1,
+            depth: 0,
+            passed: 0,
+        }
+    }
+
+    fn reader(&mut self) -> &mut Reader<'c> {
+        match &mut self.context {
+            Context::Input(linker, _) => &mut linker.reader,
+            Context::Constant(reader) => reader,
+        }
+    }
+
+    fn whole(&mut self) -> Option<Arithmetic> {
+        let result = self.sum()?;
+        if self.peek().is_some() {
+            return self.expected("an operator or the end");
+        }
+        let unit = match self.slot.value_type {
+            Type::Number(unit) => unit,
+            Type::Whole => Unit::One,
+            _ => return Some(result.expression),
+        };
+        if result.quantity.fits(unit) {
+            return Some(result.expression);
+        }
+        self.refuse_result(&result, unit)
+    }
+
     /// The next letter that is not a space.
     fn peek(&mut self) -> Option<char> {
         let rest = &self.text.value[self.at..];
@@ -87,43 +163,14 @@ impl Parser<'_, '_, '_> {
         is_next
     }
 
-    /// The place in the recipe of bytes of the text; the whole literal if it is written with escapes.
-    fn place(&self, bytes: Span) -> Span {
-        match self.text.verbatim {
-            Some(start) => start + bytes.start..start + bytes.end,
-            None => self.tree.span.clone(),
-        }
-    }
-
-    fn refuse<T>(&mut self, message: String, bytes: Span, label: &str) -> Option<T> {
-        let span = self.place(bytes);
-        self.linker
-            .reader
-            .refuse(Code::InvalidArithmetic, message, span, label, |error| error)
-    }
-
-    fn expected<T>(&mut self, what: &str) -> Option<T> {
-        let letter = self.peek();
-        let found = letter.map_or("the end".to_owned(), super::names::shown_letter);
-        let message = format!("expected {what}, found {found}");
-        let bytes = self.at..self.at + letter.map_or(0, char::len_utf8);
-        let span = self.place(bytes);
-        let label = format!("expected {what}");
-        self.linker
-            .reader
-            .refuse(Code::InvalidArithmetic, message, span, label, |error| {
-                error.expected(what, found)
-            })
-    }
-
-    fn sum(&mut self) -> Option<Deep> {
+    fn sum(&mut self) -> Option<Part> {
         self.chain(
             Self::product,
             [('+', Operator::Add), ('-', Operator::Subtract)],
         )
     }
 
-    fn product(&mut self) -> Option<Deep> {
+    fn product(&mut self) -> Option<Part> {
         self.chain(
             Self::factor,
             [('*', Operator::Multiply), ('/', Operator::Divide)],
@@ -133,35 +180,40 @@ impl Parser<'_, '_, '_> {
     /// Operators of one precedence, from left to right.
     fn chain(
         &mut self,
-        part: fn(&mut Self) -> Option<Deep>,
+        part: fn(&mut Self) -> Option<Part>,
         operators: [(char, Operator); 2],
-    ) -> Option<Deep> {
+    ) -> Option<Part> {
         let mut left = part(self)?;
         loop {
             let next = self.peek();
-            let start = self.at;
             let Some((letter, operator)) = operators.into_iter().find(|(o, _)| Some(*o) == next)
             else {
                 return Some(left);
             };
             self.take(letter);
             let right = part(self)?;
-            let depth = 1 + left.1.max(right.1);
-            let parts = [left.0, right.0];
+            let quantity = match operator {
+                Operator::Multiply => left.quantity.times(right.quantity),
+                Operator::Divide => left.quantity.over(right.quantity),
+                Operator::Add | Operator::Subtract => {
+                    self.one_unit(&letter.to_string(), &[&left, &right])?
+                }
+            };
+            let bytes = left.bytes.start..right.bytes.end;
+            let depth = 1 + left.depth.max(right.depth);
+            let parts = [left.expression, right.expression];
             let whole = Arithmetic::Binary(operator, Box::new(parts));
-            left = (self.folded(whole, start)?, self.shallow(depth, start)?);
+            left = self.part(whole, depth, quantity, bytes)?;
         }
     }
 
     /// A number, parameter, link, call or sum in parentheses, perhaps with a minus sign.
-    fn factor(&mut self) -> Option<Deep> {
+    fn factor(&mut self) -> Option<Part> {
         if self.depth >= DEPTH {
             let message = format!("arithmetic is nested more than {DEPTH} levels deep");
             let span = self.place(self.at..self.at);
-            return self
-                .linker
-                .reader
-                .refuse(Code::NestedTooDeep, message, span, "here", |e| e);
+            let reader = self.reader();
+            return reader.refuse(Code::NestedTooDeep, message, span, "here", |e| e);
         }
         self.depth += 1;
         let result = self.factor_at_depth();
@@ -169,21 +221,24 @@ impl Parser<'_, '_, '_> {
         result
     }
 
-    fn factor_at_depth(&mut self) -> Option<Deep> {
+    fn factor_at_depth(&mut self) -> Option<Part> {
+        let next = self.peek();
         let start = self.at;
-        match self.peek() {
+        match next {
             Some('-') => {
                 self.take('-');
-                let (of, depth) = self.factor()?;
-                let whole = Arithmetic::Negate(Box::new(of));
-                Some((self.folded(whole, start)?, depth + 1))
+                let of = self.factor()?;
+                let whole = Arithmetic::Negate(Box::new(of.expression));
+                self.part(whole, of.depth + 1, of.quantity, start..of.bytes.end)
             }
             Some('(') => {
                 self.take('(');
-                let sum = self.sum()?;
-                self.take(')')
-                    .then_some(sum)
-                    .or_else(|| self.expected("`)`"))
+                let mut sum = self.sum()?;
+                if !self.take(')') {
+                    return self.expected("`)`");
+                }
+                sum.bytes = start..self.at;
+                Some(sum)
             }
             Some('0'..='9' | '.') => self.number(),
             Some('$') => self.parameter(),
@@ -192,39 +247,28 @@ impl Parser<'_, '_, '_> {
         }
     }
 
-    /// The number that a constant expression gives; others stay as they are.
-    fn folded(&mut self, expression: Arithmetic, start: usize) -> Option<Arithmetic> {
-        match expression.fold() {
-            Arithmetic::Number(number) if !number.is_finite() => self.refuse_not_finite(start),
-            folded => Some(folded),
+    /// A part whose constant parts are computed, if it is finite and not too deep.
+    fn part(
+        &mut self,
+        expression: Arithmetic,
+        depth: usize,
+        quantity: Quantity,
+        bytes: Span,
+    ) -> Option<Part> {
+        let expression = match expression.fold() {
+            Arithmetic::Number(number) if !number.is_finite() => {
+                return self.refuse_not_finite(bytes);
+            }
+            folded => folded,
+        };
+        if depth > OPERATORS {
+            return self.refuse_long(bytes);
         }
-    }
-
-    fn refuse_not_finite<T>(&mut self, start: usize) -> Option<T> {
-        let span = self.place(start..self.at);
-        let message = format!(
-            "{} must be finite, found arithmetic that is not",
-            shown(self.input.name)
-        );
-        self.linker.reader.refuse(
-            Code::NotFinite,
-            message,
-            span,
-            "not a finite number",
-            |error| error.expected("a finite number", "infinity or no number"),
-        )
-    }
-
-    fn shallow(&mut self, depth: usize, start: usize) -> Option<usize> {
-        if depth <= OPERATORS {
-            return Some(depth);
-        }
-        let message = format!("arithmetic has more than {OPERATORS} operators in a row");
-        let span = self.place(start..self.at);
-        self.linker
-            .reader
-            .refuse(Code::NestedTooDeep, message, span, "here", |error| {
-                error.hint("make a node of a part of it")
-            })
+        Some(Part {
+            expression,
+            depth,
+            quantity,
+            bytes,
+        })
     }
 }

@@ -1,15 +1,14 @@
-//! The words of arithmetic: numbers, parameters, links and functions.
+//! The words of arithmetic: numbers, parameters and links.
 
-use super::{Deep, PASSED, Parser};
-use crate::colour::luminance;
-use crate::diagnostics::{Code, Span, nearest};
+use super::{Context, PASSED, Parser, Part, Quantity};
+use crate::diagnostics::{Code, Span};
 use crate::graph::literal::Slot;
 use crate::graph::names::shown;
 use crate::graph::{Arithmetic, Function, Source};
-use crate::value::{Type, Value};
+use crate::value::{Type, Unit, Value};
 
 impl Parser<'_, '_, '_> {
-    pub(super) fn number(&mut self) -> Option<Deep> {
+    pub(super) fn number(&mut self) -> Option<Part> {
         let bytes = &self.text.value.as_bytes()[self.at..];
         let belongs = |at: &usize| match bytes[*at] {
             b'+' | b'-' => *at > 0 && matches!(bytes[at - 1], b'e' | b'E'),
@@ -20,8 +19,7 @@ impl Parser<'_, '_, '_> {
         self.at = range.end;
         let written = &self.text.value[range.clone()];
         match written.parse::<f64>() {
-            Ok(number) if number.is_finite() => Some((Arithmetic::Number(number), 0)),
-            Ok(_) => self.refuse_not_finite(range.start),
+            Ok(number) => self.part(Arithmetic::Number(number), 0, Quantity::WRITTEN, range),
             Err(_) => {
                 let message = format!("{} is not a number", shown(written));
                 self.refuse(message, range, "not a number")
@@ -30,7 +28,7 @@ impl Parser<'_, '_, '_> {
     }
 
     /// The letters of a name or a link.
-    fn letters(&mut self) -> Span {
+    pub(super) fn letters(&mut self) -> Span {
         let rest = &self.text.value[self.at..];
         let belongs = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '.';
         let length = rest.find(|letter| !belongs(letter)).unwrap_or(rest.len());
@@ -39,191 +37,134 @@ impl Parser<'_, '_, '_> {
         range
     }
 
-    pub(super) fn parameter(&mut self) -> Option<Deep> {
+    pub(super) fn parameter(&mut self) -> Option<Part> {
         let start = self.at;
         self.take('$');
         let range = self.letters();
-        let name = &self.text.value[range.clone()];
-        let span = self.place(start..range.end);
-        let reader = &mut self.linker.reader;
+        let bytes = start..range.end;
+        let name = &self.text.value[range];
+        let span = self.place(bytes.clone());
+        let reader = self.reader();
         let Some((declared, source)) = reader.parameters.refer(name) else {
             return reader.refuse_unknown_parameter(name, span);
         };
         let value_type = declared.value_type?;
-        match source?.clone() {
-            Source::Literal(Value::Number(number)) => Some((Arithmetic::Number(number), 0)),
-            Source::Literal(Value::Whole(whole)) => Some((Arithmetic::Number(whole as f64), 0)),
+        let quantity = Quantity::of(declared.unit);
+        let number = match source?.clone() {
+            Source::Literal(Value::Number(number)) => number,
+            Source::Literal(Value::Whole(whole)) => whole as f64,
+            Source::Absent => return self.refuse_left_out(name, span),
             source @ (Source::Link(_) | Source::Arithmetic(_)) if value_type.is_number() => {
-                self.linker.may_vary(name, span, self.input)?;
-                self.passed(source, start)
+                let (expression, depth) = self.passed(name, source, span)?;
+                return self.part(expression, depth, quantity, bytes);
             }
-            Source::Absent => self
-                .linker
-                .reader
-                .refuse_left_out(name, span, self.input.name),
             _ => {
                 let message = format!(
                     "expected a number, found parameter {} of type {value_type}",
                     shown(name)
                 );
-                reader.refuse(Code::TypeMismatch, message, span, "not a number", |error| {
+                let reader = self.reader();
+                return reader.refuse(Code::TypeMismatch, message, span, "not a number", |error| {
                     error.expected("a number", value_type)
-                })
+                });
             }
-        }
+        };
+        self.part(Arithmetic::Number(number), 0, quantity, bytes)
     }
 
-    /// What the use of a compound gives to an input: a link, or arithmetic of its own.
-    fn passed(&mut self, source: Source, start: usize) -> Option<Deep> {
-        match source {
-            Source::Link(link) => Some((Arithmetic::Link(link), 0)),
-            Source::Arithmetic(expression) => {
-                let (depth, size) = expression.measure();
-                self.passed += size;
-                if self.passed > PASSED {
-                    let message =
-                        format!("arithmetic that compounds pass on has more than {PASSED} parts");
-                    let span = self.place(start..self.at);
-                    return self.linker.reader.refuse(
-                        Code::TooLarge,
-                        message,
-                        span,
-                        "here",
-                        |error| error,
-                    );
-                }
-                Some((expression, self.shallow(depth, start)?))
-            }
-            _ => None,
+    fn refuse_left_out<T>(&mut self, name: &str, span: Span) -> Option<T> {
+        let input = self.slot.name;
+        self.reader().refuse_left_out(name, span, input)
+    }
+
+    /// What the use of a compound gives to an input, a link or arithmetic of its own, and how deep it is.
+    pub(super) fn passed(
+        &mut self,
+        name: &str,
+        source: Source,
+        span: Span,
+    ) -> Option<(Arithmetic, usize)> {
+        let slot = self.slot;
+        let (linker, input) = match &mut self.context {
+            Context::Input(linker, input) => (linker, *input),
+            Context::Constant(reader) => return reader.refuse_passed(name, span, slot),
+        };
+        linker.may_vary(name, span.clone(), input)?;
+        let expression = match source {
+            Source::Arithmetic(expression) => expression,
+            Source::Link(link) => Arithmetic::Link(link),
+            _ => return None,
+        };
+        let (depth, size) = expression.measure();
+        self.passed += size;
+        if self.passed <= PASSED {
+            return Some((expression, depth));
         }
+        let message = format!("arithmetic that compounds pass on has more than {PASSED} parts");
+        let reader = self.reader();
+        reader.refuse(Code::TooLarge, message, span, "here", |error| error)
     }
 
     /// A function if parentheses follow, otherwise a link.
-    pub(super) fn word(&mut self) -> Option<Deep> {
+    pub(super) fn word(&mut self) -> Option<Part> {
         let range = self.letters();
         if self.take('(') {
             return self.call(range);
         }
         let name = &self.text.value[range.clone()];
-        if Function::from_name(name).is_some() && self.linker.scope.layout.slot(name).is_none() {
+        if Function::from_name(name).is_some() && !self.has_node(name) {
             return self.expected(&format!("`(` after {}", shown(name)));
         }
-        self.link(range, Type::is_number, self.input.value_type)
+        self.link(range, Type::is_number, Type::Number(Unit::One))
     }
 
-    fn link(&mut self, range: Span, suits: fn(Type) -> bool, wanted: Type) -> Option<Deep> {
-        let text = &self.text.value[range.clone()];
-        let span = self.place(range);
-        let found = self.linker.find(text, span.clone())?;
+    fn has_node(&self, name: &str) -> bool {
+        match &self.context {
+            Context::Input(linker, _) => linker.scope.layout.slot(name).is_some(),
+            Context::Constant(_) => false,
+        }
+    }
+
+    /// A link to what `suits`; `wanted` is the type that a message names.
+    pub(super) fn link(
+        &mut self,
+        bytes: Span,
+        suits: fn(Type) -> bool,
+        wanted: Type,
+    ) -> Option<Part> {
+        let text = &self.text.value[bytes.clone()];
+        let span = self.place(bytes.clone());
+        let (linker, input) = match &mut self.context {
+            Context::Input(linker, input) => (linker, *input),
+            Context::Constant(reader) => {
+                let message = format!(
+                    "expected numbers and parameters in {}, found a link to {}",
+                    shown(self.slot.name),
+                    shown(text)
+                );
+                return reader.refuse(
+                    Code::LinkNotAllowed,
+                    message,
+                    span,
+                    "no link can stand here",
+                    |error| error.expected("numbers and parameters", shown(text)),
+                );
+            }
+        };
+        let found = linker.find(text, span.clone())?;
         if !suits(found.output.value_type) {
             let slot = Slot {
-                name: self.input.name,
+                name: self.slot.name,
                 value_type: wanted,
                 range: None,
             };
-            return self.linker.refuse_type(&found, text, span, slot);
+            return linker.refuse_type(&found, text, span, slot);
         }
-        self.linker.constant(&found, text, span, self.input)?;
-        Some((Arithmetic::Link(found.link), 0))
-    }
-
-    fn call(&mut self, name: Span) -> Option<Deep> {
-        let written = &self.text.value[name.clone()];
-        match Function::from_name(written) {
-            None => self.refuse_function(name),
-            Some(Function::Luminance) => self.luminance(),
-            Some(function) => self.call_of_numbers(function, name.start),
-        }
-    }
-
-    fn refuse_function<T>(&mut self, name: Span) -> Option<T> {
-        let written = &self.text.value[name.clone()];
-        let names = Function::ALL.map(Function::name);
-        let message = format!("there is no function {}", shown(written));
-        let near = nearest(written, names);
-        let span = self.place(name);
-        let reader = &mut self.linker.reader;
-        reader.refuse(
-            Code::InvalidArithmetic,
-            message,
-            span,
-            "not a function",
-            |error| {
-                error
-                    .nearest(near)
-                    .hint(format!("the functions are {}", names.join(", ")))
-            },
-        )
-    }
-
-    /// The arguments behind the opening parenthesis.
-    fn call_of_numbers(&mut self, function: Function, start: usize) -> Option<Deep> {
-        let mut arguments = vec![self.sum()?];
-        while self.take(',') {
-            arguments.push(self.sum()?);
-        }
-        if !self.take(')') {
-            return self.expected("`,` or `)`");
-        }
-        let (wanted, found) = (function.arguments(), arguments.len());
-        if found != wanted {
-            let message = format!(
-                "`{}` takes {wanted} numbers, found {found}",
-                function.name()
-            );
-            let label = format!("expected {wanted} numbers");
-            return self.refuse(message, start..self.at, &label);
-        }
-        let (arguments, depths): (Vec<_>, Vec<_>) = arguments.into_iter().unzip();
-        let depth = 1 + depths.into_iter().max().unwrap_or(0);
-        let whole = self.folded(Arithmetic::Call(function, arguments), start)?;
-        Some((whole, self.shallow(depth, start)?))
-    }
-
-    /// Of a link to a colour, or of a parameter that is one.
-    fn luminance(&mut self) -> Option<Deep> {
-        let of = match self.peek() {
-            Some('$') => self.luminance_of_parameter()?,
-            _ => {
-                let range = self.letters();
-                let (link, depth) =
-                    self.link(range, |found| found == Type::Colour, Type::Colour)?;
-                (Arithmetic::Call(Function::Luminance, vec![link]), depth + 1)
-            }
+        linker.constant(&found, text, span, input)?;
+        let quantity = match found.output.value_type {
+            Type::Number(unit) => Quantity::of(unit),
+            _ => Quantity::of(Unit::One),
         };
-        self.take(')')
-            .then_some(of)
-            .or_else(|| self.expected("`)`"))
-    }
-
-    fn luminance_of_parameter(&mut self) -> Option<Deep> {
-        let start = self.at;
-        self.take('$');
-        let range = self.letters();
-        let span = self.place(start..range.end);
-        let slot = Slot {
-            name: "luminance",
-            value_type: Type::Colour,
-            range: None,
-        };
-        let name = &self.text.value[range];
-        if let Some((_, Some(Source::Link(link)))) = self.linker.reader.parameters.refer(name) {
-            let link = Arithmetic::Link(*link);
-            self.linker.may_vary(name, span.clone(), self.input)?;
-            self.linker.fits(name, span, slot)?;
-            return Some((Arithmetic::Call(Function::Luminance, vec![link]), 1));
-        }
-        let value = self.linker.reader.parameter(name, span, slot)?;
-        let Value::Colour(colour) = value else {
-            return None;
-        };
-        let number = f64::from(luminance(colour.map(|part| part as f32)));
-        Some((Arithmetic::Number(number), 0))
-    }
-}
-
-impl Type {
-    fn is_number(self) -> bool {
-        matches!(self, Type::Number(_))
+        self.part(Arithmetic::Link(found.link), 0, quantity, bytes)
     }
 }

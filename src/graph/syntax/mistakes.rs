@@ -1,12 +1,23 @@
 //! What is said about text that is not a recipe's.
 
 use super::{DEPTH, Parser, VALUES};
-use crate::diagnostics::{Code, Span};
+use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::graph::lexer::{Bracket, TokenKind, unclosed};
 use crate::graph::names::{shown, shown_letter};
 use crate::graph::tree::{Shape, Tree};
 
 impl Parser<'_, '_> {
+    /// Keeps a mistake, unless an unclosed string before it on the line explains it.
+    pub(super) fn add(&mut self, diagnostic: Diagnostic) {
+        let place = diagnostic
+            .label
+            .as_ref()
+            .map_or(0, |label| label.span.start);
+        if !self.lexer.is_explained(place) {
+            self.report.add(diagnostic);
+        }
+    }
+
     /// Reports that something else was expected than the token.
     pub(super) fn expected(&mut self, what: &str) {
         if self.gave_up || self.token.follows_mistake {
@@ -17,7 +28,7 @@ impl Parser<'_, '_> {
         let label = format!("expected {what}");
         let span = self.token.span.clone();
         let error = self.report.error(Code::Syntax, message, span, label);
-        self.report.add(error.expected(what, found));
+        self.add(error.expected(what, found));
     }
 
     pub(super) fn found(&self) -> String {
@@ -38,7 +49,7 @@ impl Parser<'_, '_> {
             let error = self
                 .report
                 .error(Code::TooLarge, message, span, "one too many");
-            self.report.add(error);
+            self.add(error);
         }
         self.give_up();
     }
@@ -49,8 +60,8 @@ impl Parser<'_, '_> {
             let message = format!("brackets are nested more than {DEPTH} levels deep");
             let span = self.token.span.clone();
             let label = format!("this is level {}", DEPTH + 1);
-            self.report
-                .add(self.report.error(Code::NestedTooDeep, message, span, label));
+            let error = self.report.error(Code::NestedTooDeep, message, span, label);
+            self.add(error);
         }
         self.give_up();
     }
@@ -63,7 +74,7 @@ impl Parser<'_, '_> {
             let error = self
                 .report
                 .error(Code::Syntax, message, span, "this has no name");
-            self.report.add(error.expected("`name: value`", found));
+            self.add(error.expected("`name: value`", found));
         }
     }
 
@@ -74,17 +85,30 @@ impl Parser<'_, '_> {
         let label = format!("expected {expected}");
         let span = self.token.span.clone();
         let error = self.report.error(Code::Syntax, message, span, label);
-        self.report.add(
+        self.add(
             error
                 .expected(expected, found)
                 .and_at(opening.clone(), "opened here"),
         );
     }
 
-    /// Reports the innermost bracket that is not closed; at the end of the file it stands for all.
+    /// Reports a bracket that closes nothing: what is open was opened on lines that are less indented.
+    pub(super) fn refuse_extra(&mut self) {
+        let found = self.found();
+        let message = format!("this {found} closes nothing");
+        let span = self.token.span.clone();
+        let error = self
+            .report
+            .error(Code::Syntax, message, span, "one too many");
+        self.add(error);
+    }
+
+    /// Reports the innermost bracket that is not closed; at the end of the file it stands for all, and
+    /// where a declaration begins, for those around it that are closed by it as well.
     pub(super) fn refuse_unclosed(&mut self, bracket: Bracket, opening: &Span) {
-        let is_explained = self.token.kind == TokenKind::End && self.lexer.found_unclosed;
-        if self.gave_up || is_explained {
+        let is_explained = self.token.kind == TokenKind::End && self.lexer.found_unclosed
+            || self.lexer.explains_bracket(opening.start);
+        if self.gave_up || is_explained || self.token.follows_mistake {
             return;
         }
         let what = format!("`{}`", bracket.open());
@@ -95,6 +119,6 @@ impl Parser<'_, '_> {
             let label = format!("expected `{}` before this", bracket.close());
             error = error.and_at(self.token.span.clone(), label);
         }
-        self.report.add(error);
+        self.add(error);
     }
 }

@@ -6,6 +6,7 @@
 //! asks the `ron` crate about the rest.
 
 mod mistakes;
+mod recovery;
 
 use super::lexer::{Bracket, Lexer, Token, TokenKind};
 use super::names::shown;
@@ -13,6 +14,7 @@ use super::number;
 use super::report::Report;
 use super::tree::{Entry, Field, Shape, Tree, Word};
 use crate::diagnostics::{Code, Span};
+use recovery::Open;
 
 /// Values that are read.
 const VALUES: usize = 4_000_000;
@@ -36,12 +38,16 @@ pub(super) fn parse(report: &mut Report) -> Option<Tree> {
         token,
         ahead,
         open: vec![],
+        starts_line: true,
+        indent: 0,
         values: 0,
         end: 0,
         report,
         gave_up: false,
     };
-    parser.file()
+    let tree = parser.file();
+    report.keep_first_of_lines();
+    tree
 }
 
 struct Parser<'t, 'r> {
@@ -49,7 +55,11 @@ struct Parser<'t, 'r> {
     token: Token,
     ahead: Token,
     /// The brackets around the token.
-    open: Vec<Bracket>,
+    open: Vec<Open>,
+    /// Whether the token is the first of its line.
+    starts_line: bool,
+    /// Bytes before the first token of the token's line.
+    indent: usize,
     /// Values that have been read.
     values: usize,
     /// Where the last taken token ended.
@@ -80,6 +90,7 @@ impl Parser<'_, '_> {
         let ahead = std::mem::replace(&mut self.ahead, next);
         let token = std::mem::replace(&mut self.token, ahead);
         self.end = token.span.end;
+        self.find_line();
         token
     }
 
@@ -132,7 +143,7 @@ impl Parser<'_, '_> {
         let text = &self.report.source.text[span.clone()];
         if number::read(text).is_none() {
             let message = format!("{} is not a number", shown(text));
-            self.report.add(
+            self.add(
                 self.report
                     .error(Code::Syntax, message, span, "not a number"),
             );
@@ -148,8 +159,10 @@ impl Parser<'_, '_> {
     /// A bare name, or the name of a record or tuple.
     fn name(&mut self) -> Shape {
         let word = self.word();
+        let is_field = self.ahead.kind == TokenKind::Colon;
         match self.token.kind {
             TokenKind::Open(Bracket::Round) => self.bracket(Bracket::Round, Some(word)),
+            TokenKind::Name(_) if is_field && self.is_in_map() => self.record_without_open(word),
             _ => Shape::Name(word.text),
         }
     }
@@ -174,7 +187,7 @@ impl Parser<'_, '_> {
             return Shape::Missing;
         }
         let opening = self.token.span.clone();
-        self.open.push(bracket);
+        self.push(bracket, self.indent);
         self.advance();
         let shape = match bracket {
             Bracket::Round => self.parentheses(name, &opening),
@@ -212,12 +225,16 @@ impl Parser<'_, '_> {
                     self.advance();
                     return items;
                 }
-                TokenKind::Close(closing) if !self.open.contains(&closing) => {
+                TokenKind::Close(closing) if self.closes_nothing(closing) => {
+                    self.refuse_extra();
+                    self.advance();
+                }
+                TokenKind::Close(closing) if !self.is_open(closing) => {
                     self.refuse_closing(bracket, opening);
                     self.advance();
                     return items;
                 }
-                TokenKind::Name(_) if self.leaves_list(bracket) => {
+                _ if self.leaves(bracket) => {
                     self.refuse_unclosed(bracket, opening);
                     self.token.follows_mistake = true;
                     return items;
@@ -237,14 +254,6 @@ impl Parser<'_, '_> {
         }
     }
 
-    /// Whether a field of the record around a list begins here.
-    fn leaves_list(&self, bracket: Bracket) -> bool {
-        let around = self.open.iter().rev().nth(1);
-        bracket == Bracket::Square
-            && self.ahead.kind == TokenKind::Colon
-            && around == Some(&Bracket::Round)
-    }
-
     /// A comma, unless the bracket closes.
     fn separator(&mut self) {
         match self.token.kind {
@@ -262,7 +271,7 @@ impl Parser<'_, '_> {
                     self.end..self.end,
                     "a comma is missing here",
                 );
-                self.report.add(error.expected("`,`", found));
+                self.add(error.expected("`,`", found));
             }
         }
     }
@@ -276,7 +285,7 @@ impl Parser<'_, '_> {
                 let message = format!("expected the name of a field, found {found}");
                 let span = self.token.span.clone();
                 let error = self.report.error(Code::Syntax, message, span, "in quotes");
-                self.report.add(
+                self.add(
                     error
                         .expected("the name of a field", found)
                         .hint("write names of fields and inputs without quotes"),
@@ -288,16 +297,27 @@ impl Parser<'_, '_> {
     }
 
     fn field(&mut self) -> Field {
+        if let Some(open) = self.open.last_mut() {
+            open.has_fields = true;
+        }
         let name = self.word();
         self.advance();
-        Field {
-            name,
-            value: self.value(),
-        }
+        let begins_entry =
+            matches!(self.token.kind, TokenKind::Text(_)) && self.ahead.kind == TokenKind::Colon;
+        let value = if begins_entry {
+            self.map_without_brace()
+        } else {
+            self.value()
+        };
+        Field { name, value }
     }
 
     fn entry(&mut self) -> Entry {
         let key = self.value();
+        if self.token.kind != TokenKind::Colon && self.ahead.kind == TokenKind::Colon {
+            self.expected("`:`");
+            self.advance();
+        }
         if self.token.kind == TokenKind::Colon {
             self.advance();
             return Entry {
