@@ -80,11 +80,12 @@ impl Form {
     }
 }
 
-/// How strong the next octave of ridges is, given the expected ridge of this one, its strength, and the
-/// squares of the pixel's sides.
+/// How strong the next octave of ridges is, min(1, 2 r s), given the expected ridge r of this one, its
+/// strength s, and the squares of the pixel's sides.
 ///
-/// Octaves do not know each other, so means of products are products of means; only the limit of 1 is
-/// not linear. As an octave fades, the limited ridge gives way to its mean over all noise.
+/// Octaves do not know each other, so means of products are products of means; only the limit of 1 is not
+/// linear. It is a fold, min(1, x) = (1 + x - |1 - x|) / 2, and is treated as one: as the octave fades, b²
+/// grows until the mean over all noise is right within 0.004, whatever s is.
 #[inline(always)]
 pub(super) fn next_strength<S: Simd>(
     simd: S,
@@ -93,16 +94,11 @@ pub(super) fn next_strength<S: Simd>(
     squares: [S::f32s; 2],
 ) -> S::f32s {
     let known = weight::<S>(simd, squares, [DIVISIONS[0]; 2]);
-    let limited = (ridge * strength * 2.0).min_precise(1.0);
-    let mean = mean_limited::<S>(strength);
-    mean + (limited - mean) * known
-}
-
-/// The mean of min(1, 2 strength (1 - |n|)²) over all noise n, fitted within 0.002: a line as long as the
-/// limit is not reached, and a polynomial.
-#[inline(always)]
-fn mean_limited<S: Simd>(strength: S::f32s) -> S::f32s {
-    let above = (strength - 0.5).max_precise(0.0);
-    let bent = above * above * (above * (above * 2.5 - 4.0) + 2.8);
-    strength * (2.0 * Form::Ridged.mean()) - bent
+    let unlimited = ridge * strength * 2.0;
+    // No ridge reaches the limit while s is less than a half.
+    let above = (strength * 2.0 - 1.0).max_precise(0.0);
+    let spread = above * (above * (above * -1.0 + 1.0) + 1.0) * 0.128;
+    let short = unlimited * -1.0 + 1.0;
+    let fold = (short * short + spread * (known * known * -1.0 + 1.0)).sqrt();
+    (unlimited + 1.0 - fold) * 0.5
 }

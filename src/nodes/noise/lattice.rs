@@ -14,6 +14,9 @@ pub(super) const BORDER: f32 = 1_073_741_824.0;
 /// Odd multipliers with well mixed bits: one for each axis and one to finish.
 const MULTIPLIERS: [u32; 4] = [0x9e37_79b1, 0x85eb_ca6b, 0xc2b2_ae35, 0x27d4_eb2d];
 
+/// A third of the whole numbers are larger, and a third are smaller than its negative.
+const THIRD: i32 = i32::MAX / 3;
+
 /// N noises at points in cells: 0 at whole coordinates, within -1.04 to 1.04, with the mean 0.
 ///
 /// They share a lattice and its hashes, but every one takes its gradients from other bits. Along an axis
@@ -86,28 +89,24 @@ fn hash<S: Simd>(cell: S::f32s, multiplier: u32) -> S::u32s {
     cell.to_int::<S::i32s>().bitcast::<S::u32s>() * multiplier
 }
 
-/// The products of a position with the gradients that the upper bits choose, four for each.
+/// The products of a position with gradients: the first from the bits, others from bits mixed anew.
 #[inline(always)]
 fn along_gradients<S: Simd, const N: usize>(
     mut bits: S::u32s,
     [x, y, z]: [S::f32s; 3],
 ) -> [S::f32s; N] {
     let mut products = [x; N];
-    for product in &mut products {
-        // Perlin's twelve gradients with four of them twice, so that four bits choose.
-        let u = highest::<S>(bits).select(y, x);
-        let v = highest::<S>(bits | (bits << 1))
-            .select((bits & 0xd000_0000).simd_eq(0xc000_0000).select(x, z), y);
-        *product = with_sign::<S>(u, bits << 3) + with_sign::<S>(v, bits << 2);
-        bits <<= 4u32;
+    for (index, product) in products.iter_mut().enumerate() {
+        if index > 0 {
+            bits = (bits ^ (bits >> 15)) * MULTIPLIERS[3];
+        }
+        // A third of the numbers each for the planes of (x, y), (x, z) and (y, z).
+        let number = bits.bitcast::<S::i32s>();
+        let u = number.simd_gt(THIRD).select(y, x);
+        let v = number.simd_lt(-THIRD).select(y, z);
+        *product = with_sign::<S>(u, bits << 8) + with_sign::<S>(v, bits << 9);
     }
     products
-}
-
-/// Where the highest bit is set.
-#[inline(always)]
-fn highest<S: Simd>(bits: S::u32s) -> S::mask32s {
-    bits.bitcast::<S::i32s>().simd_lt(0)
 }
 
 /// The number with its sign turned where the highest bit is set.
