@@ -1,14 +1,16 @@
 //! What the noise kinds have in common: inputs, outputs, and how they are built.
 
-use super::octaves::NoiseKernel;
+use super::form::Form;
+use super::octaves::{NoiseKernel, Octave};
+use super::period;
 use super::random::Random;
 use crate::field::Field;
-use crate::node::{Build, Input, Inputs, Output};
+use crate::node::{Build, Failure, Input, Inputs, Output};
 use crate::value::{Domain, Type, Unit, Value};
 
 /// Where the maths of the noise kinds comes from.
-pub(super) const SOURCE: &str =
-    "Perlin 2002 (gradients and fade); Musgrave 1994 (octaves, ridges); fading: own construction";
+pub(super) const SOURCE: &str = "Perlin 1985 (octaves, turbulence), 2002 (gradients and fade); Musgrave 1998 in Ebert et al., Texturing and Modeling \
+     (ridged multifractal, offset 1 and gain 2); filtering: own construction";
 
 /// The inputs of the noise kinds.
 pub(super) const INPUTS: &[Input] = &[
@@ -42,9 +44,17 @@ pub(super) const INPUTS: &[Input] = &[
     Input::new(
         "form",
         Type::Choice(&["fbm", "ridged", "billow"]),
-        "Soft around 0, sharp crests at 1, or round bumps between creases at -1.",
+        "`fbm` is soft around 0, `ridged` has sharp crests at 1, `billow` round bumps between creases at 0.",
     )
     .default("fbm"),
+    Input::new(
+        "period",
+        Type::Vector(Unit::Millimetre),
+        "Distance along x, y and z after which the noise repeats, 0 for never; `size` is made to fit a whole number \
+         of times, and refused if that takes more than 1 %. Needs a whole `lacunarity`.",
+    )
+    .default("(0, 0, 0)")
+    .range(0.0, 1e6),
     Input::new(
         "seed",
         Type::Whole,
@@ -59,13 +69,13 @@ pub(super) const fn outputs(domain: Domain) -> [Output; 2] {
         Output::field(
             "value",
             Type::Number(Unit::One),
-            "About -1 to 1; for `fbm` the mean is 0, and one octave deviates by 0.27.",
+            "`fbm`: -1 to 1 with the mean 0, one octave deviates by 0.27; `ridged`: 0 to 1; `billow`: 0 to 1 with the mean 0.22.",
         )
         .on(domain),
         Output::field(
             "vector",
             Type::Vector(Unit::One),
-            "Three values that have nothing to do with each other, nor with `value`.",
+            "Three values as `value`, that have nothing to do with each other, nor with it.",
         )
         .on(domain),
     ]
@@ -77,11 +87,51 @@ pub(super) fn build(
     domain: Domain,
     inputs: &Inputs<'_>,
     build: &Build<'_>,
-) -> Vec<Value> {
+) -> Result<Vec<Value>, Failure> {
+    let cells = period::cells(inputs)?;
     let mut random = Random::new(build.seed, kind, inputs.whole("seed"));
     let mut columns = |count| {
-        let kernel = NoiseKernel::new(inputs, &mut random, count);
+        let kernel = kernel(inputs, cells, &mut random, count);
         Value::Field(build.kernel(kernel, vec![Field::position(domain)]))
     };
-    vec![columns(1), columns(3)]
+    Ok(vec![columns(1), columns(3)])
+}
+
+/// The kernel with 1 or 3 columns that the inputs describe, given the first octave's cells in a period.
+fn kernel(
+    inputs: &Inputs<'_>,
+    cells: [f64; 3],
+    random: &mut Random,
+    columns: usize,
+) -> NoiseKernel {
+    let (size, period) = (inputs.vector("size"), inputs.vector("period"));
+    let form = Form::named(inputs.choice("form"));
+    let scale = [0, 1, 2].map(|axis| match cells[axis] {
+        0.0 => (1.0 / size[axis]) as f32,
+        cells => (cells / period[axis]) as f32,
+    });
+    NoiseKernel {
+        scale,
+        period: period.to_array().map(|period| period as f32),
+        octaves: octaves(inputs, form, cells, random),
+        form,
+        columns,
+    }
+}
+
+fn octaves(inputs: &Inputs<'_>, form: Form, cells: [f64; 3], random: &mut Random) -> Vec<Octave> {
+    let count = inputs.whole("octaves").unsigned_abs() as usize;
+    let powers =
+        |base: f64| std::iter::successors(Some(1.0), move |power| Some(power * base)).take(count);
+    let (gain, lacunarity) = (inputs.number("gain"), inputs.number("lacunarity"));
+    let total: f64 = powers(gain).sum();
+    let octave = |(fineness, strength): (f64, f64)| Octave {
+        fineness: fineness as f32,
+        strength: (strength / total) as f32,
+        offset: [random.share(), random.share(), random.share()],
+        repeat: cells.map(|cells| (cells * fineness) as f32),
+        seed: random.bits(),
+        steps: form.steps(strength / total),
+    };
+    powers(lacunarity).zip(powers(gain)).map(octave).collect()
 }

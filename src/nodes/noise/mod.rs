@@ -1,9 +1,12 @@
 //! Noise: irregularity that looks grown, and what it does to materials.
 
 pub mod distort;
+mod filter;
+mod form;
 mod interface;
 mod lattice;
 mod octaves;
+mod period;
 pub mod plane_noise;
 mod random;
 pub mod solid_noise;

@@ -1,149 +1,167 @@
 //! The kernel of noise: octaves of gradient noise, each filtered by the size of a sample.
-//!
-//! An octave whose features are finer than a sample fades to its mean. Its weight is a smoothstep of the
-//! footprint, the larger of the sample's two sides in cells of the octave, from 1 at 0 to 0 at 2.2, or at
-//! 1.5 for the folded forms. That is the regression of the mean over a square on the noise in its centre,
-//! within 0.08 up to a footprint of 1.5. What no weight could make good stays as an error: at most 0.09 of
-//! a deviation of 0.27 for the soft form, 0.11 of 0.31 for the folded ones.
 
-use super::lattice::gradient_noise;
-use super::random::Random;
+use super::filter::{DIVISIONS, Division, Steps, weight};
+use super::form::{Form, next_strength};
+use super::lattice::{BORDER, gradient_noise};
 use crate::field::{Block, InputColumn, Kernel};
 use crate::key::KeyHasher;
-use crate::node::Inputs;
 use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 /// Raised whenever a result changes.
-pub(super) const VERSION: u32 = 1;
-
-/// The shape that is given to every octave.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Form {
-    Soft,
-    Ridged,
-    Billow,
-}
-
-/// Mean size of gradient noise, measured over 200 000 points.
-pub(super) const MEAN_SIZE: f32 = 0.2202;
-
-impl Form {
-    /// What an octave becomes where it is averaged away.
-    fn mean(self) -> f32 {
-        match self {
-            Form::Soft => 0.0,
-            Form::Ridged => 1.0 - 2.0 * MEAN_SIZE,
-            Form::Billow => 2.0 * MEAN_SIZE - 1.0,
-        }
-    }
-
-    /// The footprint from which on an octave is averaged away, in its cells.
-    fn last_footprint(self) -> f32 {
-        match self {
-            Form::Soft => 2.2,
-            Form::Ridged | Form::Billow => 1.5,
-        }
-    }
-
-    #[inline(always)]
-    fn apply<S: Simd>(self, noise: S::f32s) -> S::f32s {
-        match self {
-            Form::Soft => noise,
-            Form::Ridged => noise.abs() * -2.0 + 1.0,
-            Form::Billow => noise.abs() * 2.0 - 1.0,
-        }
-    }
-}
+pub(super) const VERSION: u32 = 2;
 
 /// One octave.
 #[derive(Clone, Copy, Debug)]
-struct Octave {
+pub(super) struct Octave {
     /// How many times finer it is than the first.
-    fineness: f32,
+    pub(super) fineness: f32,
     /// Its share of the sum; all add up to 1.
-    strength: f32,
+    pub(super) strength: f32,
     /// Where the lattice begins, in cells: no cut of the solid runs along a plane of lattice points.
-    offset: [f32; 3],
-    seed: u32,
+    pub(super) offset: [f32; 3],
+    /// Cells along x, y and z until it repeats, 0 where it does not.
+    pub(super) repeat: [f32; 3],
+    pub(super) seed: u32,
+    /// When pixels are divided.
+    pub(super) steps: Steps,
 }
 
 /// From the position in mm to one noise or several.
 #[derive(Debug)]
 pub(super) struct NoiseKernel {
     /// Cells of the first octave per mm.
-    scale: [f32; 3],
-    octaves: Vec<Octave>,
-    form: Form,
+    pub(super) scale: [f32; 3],
+    /// Millimetres until the noise repeats, 0 where it does not.
+    pub(super) period: [f32; 3],
+    pub(super) octaves: Vec<Octave>,
+    pub(super) form: Form,
     /// 1, or 3 for a vector.
-    columns: usize,
+    pub(super) columns: usize,
+}
+
+/// A vector of samples: centres and sides of pixels, in cells of the first octave.
+#[derive(Clone, Copy)]
+struct Pixels<S: Simd> {
+    centre: [S::f32s; 3],
+    sides: [[S::f32s; 3]; 2],
+    /// The squares of the sides' lengths.
+    squares: [S::f32s; 2],
 }
 
 impl NoiseKernel {
-    /// The kernel with 1 or 3 columns that the inputs describe.
-    pub(super) fn new(inputs: &Inputs<'_>, random: &mut Random, columns: usize) -> NoiseKernel {
-        let count = inputs.whole("octaves").unsigned_abs() as usize;
-        let (gain, lacunarity) = (inputs.number("gain"), inputs.number("lacunarity"));
-        let powers = |base: f64| {
-            std::iter::successors(Some(1.0), move |power| Some(power * base)).take(count)
-        };
-        let total: f64 = powers(gain).sum();
-        let octave = |(fineness, strength): (f64, f64)| Octave {
-            fineness: fineness as f32,
-            strength: (strength / total) as f32,
-            offset: [random.share(), random.share(), random.share()],
-            seed: random.bits(),
-        };
-        NoiseKernel {
-            scale: inputs
-                .vector("size")
-                .to_array()
-                .map(|size| (1.0 / size) as f32),
-            octaves: powers(lacunarity).zip(powers(gain)).map(octave).collect(),
-            form: match inputs.choice("form") {
-                "ridged" => Form::Ridged,
-                "billow" => Form::Billow,
-                _ => Form::Soft,
-            },
-            columns,
-        }
-    }
-
-    /// The sums of N columns' octaves at points given in cells of the first.
+    /// The sums of N columns' octaves.
     #[inline(always)]
-    fn sums<S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        at: [S::f32s; 3],
-        footprint: S::f32s,
-    ) -> [S::f32s; N] {
-        let mean = self.form.mean();
-        let share = footprint * (1.0 / self.form.last_footprint());
-        let mut sums = [S::f32s::splat(simd, mean); N];
+    fn sums<S: Simd, const N: usize>(&self, simd: S, pixels: Pixels<S>) -> [S::f32s; N] {
+        let mut sums = [S::f32s::splat(simd, 0.0); N];
+        let mut strengths = [S::f32s::splat(simd, 1.0); N];
         for octave in &self.octaves {
-            let weight = weight::<S>(share * octave.fineness);
-            if weight.simd_gt(0.0).any_true() {
-                let at = [
-                    at[0] * octave.fineness + octave.offset[0],
-                    at[1] * octave.fineness + octave.offset[1],
-                    at[2] * octave.fineness + octave.offset[2],
-                ];
-                let noises = gradient_noise::<S, N>(simd, at, octave.seed);
-                for (sum, noise) in sums.iter_mut().zip(noises) {
-                    *sum += (self.form.apply::<S>(noise) - mean) * weight * octave.strength;
+            let square = octave.fineness * octave.fineness;
+            let squares = [pixels.squares[0] * square, pixels.squares[1] * square];
+            let first = octave.steps.0[0];
+            let means = if (squares[0].simd_gt(first) | squares[1].simd_gt(first)).any_true() {
+                divided::<S, N>(simd, self.form, octave, pixels, squares)
+            } else {
+                mean::<S, N>(simd, self.form, octave, pixels, squares, [DIVISIONS[0]; 2])
+            };
+            for ((sum, strength), mean) in sums.iter_mut().zip(&mut strengths).zip(means) {
+                if self.form == Form::Ridged {
+                    *sum += mean * *strength * octave.strength;
+                    *strength = next_strength::<S>(simd, mean, *strength, squares);
+                } else {
+                    *sum += mean * octave.strength;
                 }
             }
         }
         sums
     }
+
+    /// The coordinate of the first octave, in cells, beyond which noise is that of the border.
+    fn border(&self) -> f32 {
+        let finest = self.octaves.last().map_or(1.0, |octave| octave.fineness);
+        BORDER / finest - 1.0
+    }
 }
 
-/// What is left of an octave, given its footprint as a share of the last one.
+/// The means of an octave over pixels that are divided as each of them needs it.
+#[simd]
+fn divided<S: Simd, const N: usize>(
+    simd: S,
+    form: Form,
+    octave: &Octave,
+    pixels: Pixels<S>,
+    squares: [S::f32s; 2],
+) -> [S::f32s; N] {
+    let rows = octave.steps.count::<S>(simd, squares[0]);
+    let columns = octave.steps.count::<S>(simd, squares[1]);
+    let mut means = [S::f32s::splat(simd, form.mean()); N];
+    for division in DIVISIONS {
+        let of_rows = rows.simd_eq(f32::from(division.count));
+        for other in DIVISIONS {
+            let chosen = of_rows & columns.simd_eq(f32::from(other.count));
+            if chosen.any_true() {
+                let found = mean::<S, N>(simd, form, octave, pixels, squares, [division, other]);
+                for (mean, found) in means.iter_mut().zip(found) {
+                    *mean = chosen.select(found, *mean);
+                }
+            }
+        }
+    }
+    means
+}
+
+/// The means of an octave over pixels whose sides are divided in one way.
 #[inline(always)]
-fn weight<S: Simd>(share: S::f32s) -> S::f32s {
-    let t = share.min_precise(1.0);
-    t * t * (t * 2.0 - 3.0) + 1.0
+fn mean<S: Simd, const N: usize>(
+    simd: S,
+    form: Form,
+    octave: &Octave,
+    pixels: Pixels<S>,
+    squares: [S::f32s; 2],
+    divisions: [Division; 2],
+) -> [S::f32s; N] {
+    let none = S::f32s::splat(simd, form.mean());
+    let weight = weight::<S>(simd, squares, divisions);
+    let known = weight.simd_gt(0.0);
+    let mut means = [none; N];
+    if !known.any_true() {
+        return means;
+    }
+    let mut sums = [S::f32s::splat(simd, 0.0); N];
+    let [rows, columns] = divisions;
+    for row in 0..rows.count {
+        for column in 0..columns.count {
+            let at = octave.place::<S>(pixels, [rows.point(row), columns.point(column)]);
+            let noises = gradient_noise::<S, N>(simd, at, octave.seed, octave.repeat);
+            for (sum, noise) in sums.iter_mut().zip(noises) {
+                *sum += form.expected::<S>(noise, weight);
+            }
+        }
+    }
+    let share = 1.0 / f32::from(rows.count * columns.count);
+    for (mean, sum) in means.iter_mut().zip(sums) {
+        *mean = known.select(sum * share, none);
+    }
+    means
+}
+
+impl Octave {
+    /// The point that lies some shares of the sides beside the centre, in cells.
+    #[inline(always)]
+    fn place<S: Simd>(&self, pixels: Pixels<S>, shares: [f32; 2]) -> [S::f32s; 3] {
+        let mut at = pixels.centre;
+        for axis in 0..3 {
+            for (side, share) in pixels.sides.iter().zip(shares) {
+                // Most pixels are not divided.
+                if share != 0.0 {
+                    at[axis] += side[axis] * share;
+                }
+            }
+            at[axis] = at[axis] * self.fineness + self.offset[axis];
+        }
+        at
+    }
 }
 
 impl Kernel for NoiseKernel {
@@ -158,6 +176,7 @@ impl Kernel for NoiseKernel {
             });
         };
         numbers(&self.scale);
+        numbers(&self.period);
         for octave in &self.octaves {
             numbers(&[octave.fineness, octave.strength]);
             numbers(&octave.offset);
@@ -197,21 +216,29 @@ fn evaluate_block<S: Simd, const N: usize>(
     position: [InputColumn<'_>; 3],
     outputs: &mut [Vec<f32>],
 ) {
-    let length = position[0].values.len();
-    for start in (0..length).step_by(S::f32s::LEN) {
+    let border = kernel.border();
+    let zero = S::f32s::splat(simd, 0.0);
+    for start in (0..position[0].values.len()).step_by(S::f32s::LEN) {
         let range = start..start + S::f32s::LEN;
-        let mut at = [S::f32s::splat(simd, 0.0); 3];
-        let mut squares = [S::f32s::splat(simd, 0.0); 2];
+        let mut pixels = Pixels::<S> {
+            centre: [zero; 3],
+            sides: [[zero; 3]; 2],
+            squares: [zero; 2],
+        };
         for axis in 0..3 {
-            let scale = kernel.scale[axis];
-            at[axis] = S::f32s::from_slice(simd, &position[axis].values[range.clone()]) * scale;
-            for (square, spread) in squares.iter_mut().zip(position[axis].spread) {
-                let spread = S::f32s::from_slice(simd, &spread[range.clone()]) * scale;
-                *square += spread * spread;
+            let (scale, period) = (kernel.scale[axis], kernel.period[axis]);
+            let mut at = S::f32s::from_slice(simd, &position[axis].values[range.clone()]);
+            if period > 0.0 {
+                at -= (at / period).floor() * period;
+            }
+            pixels.centre[axis] = (at * scale).max_precise(-border).min_precise(border);
+            for (index, spread) in position[axis].spread.iter().enumerate() {
+                let side = S::f32s::from_slice(simd, &spread[range.clone()]) * scale;
+                pixels.sides[index][axis] = side;
+                pixels.squares[index] += side * side;
             }
         }
-        let footprint = squares[0].max_precise(squares[1]).sqrt();
-        let sums = kernel.sums::<S, N>(simd, at, footprint);
+        let sums = kernel.sums::<S, N>(simd, pixels);
         for (sum, output) in sums.into_iter().zip(outputs.iter_mut()) {
             sum.store_slice(&mut output[range.clone()]);
         }

@@ -21,5 +21,5 @@ pub static KIND: Kind = Kind {
 const OUTPUTS: &[Output] = &interface::outputs(Domain::Plane);
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
-    Ok(interface::build(KIND.name, Domain::Plane, inputs, build))
+    interface::build(KIND.name, Domain::Plane, inputs, build)
 }

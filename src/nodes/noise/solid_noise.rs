@@ -21,5 +21,5 @@ pub static KIND: Kind = Kind {
 const OUTPUTS: &[Output] = &interface::outputs(Domain::Solid);
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
-    Ok(interface::build(KIND.name, Domain::Solid, inputs, build))
+    interface::build(KIND.name, Domain::Solid, inputs, build)
 }
