@@ -136,7 +136,7 @@ impl Table {
 fn pieces(pattern: &ColourPattern, count: usize, rings: &Rings) -> Vec<Piece> {
     let (colours, smooth) = (&pattern.colours, pattern.smooth);
     let last = colours.len() - 1;
-    let border = |piece: usize| match (smooth, piece % 2 == 0) {
+    let border = |piece: usize| match (smooth, piece.is_multiple_of(2)) {
         (false, _) => colours[piece.min(last)].map(f64::from),
         (true, false) => colours[piece / 2].map(f64::from),
         (true, true) => {
