@@ -11,11 +11,13 @@ mod samples;
 mod slots;
 mod spread;
 mod supersample;
+mod transpose;
 
 pub use compile::Program;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};
 pub use run::{ColumnCache, Columns, RunContext, Scratch, Work};
 pub use samples::{PixelGrid, Samples, Target};
+pub(crate) use transpose::transposed;
 
 use crate::key::{Key, KeyHasher};
 use crate::value::Domain;

@@ -1,5 +1,8 @@
 //! Spread: how much a column changes from one sample to the next, and how much it bends.
 
+use fearless_simd::prelude::*;
+use fearless_simd_macros::simd;
+
 /// Writes the change per sample along rows and columns of every grid: central differences inside,
 /// one-sided ones at the rim, 0 where a grid has no neighbours.
 pub(super) fn write_spread(values: &[f32], [width, height]: [usize; 2], along: &mut [Vec<f32>; 2]) {
@@ -47,35 +50,128 @@ fn differences_between_rows(grid: &[f32], width: usize, out: &mut [f32]) {
     }
 }
 
-/// How far the column departs from a plane within one sample, at the inner sample `index`:
-/// the second-order terms of its Taylor series at the corner of the sample.
-pub(super) fn bend(values: &[f32], width: usize, index: usize) -> f32 {
-    let at = |offset: isize| values[index.wrapping_add_signed(offset)];
-    let (row, here) = (width as isize, at(0));
-    let along_row = at(1) - 2.0 * here + at(-1);
-    let along_column = at(row) - 2.0 * here + at(-row);
-    let mixed = 0.25 * ((at(row + 1) - at(row - 1)) - (at(1 - row) - at(-row - 1)));
-    0.125 * (along_row.abs() + along_column.abs()) + 0.25 * mixed.abs()
+/// The samples of a grid that are asked about: all but those near its rim.
+pub(super) struct Inside {
+    /// Samples in a row of the grid.
+    pub(super) width: usize,
+    /// Rows of the grid.
+    pub(super) height: usize,
+    /// Samples left out at each side, at least one.
+    pub(super) border: usize,
 }
 
-/// How much the column changes across one sample, at the inner sample `index`.
-pub(super) fn size(values: &[f32], width: usize, index: usize) -> f32 {
-    let along_row = 0.5 * (values[index + 1] - values[index - 1]);
-    let along_column = 0.5 * (values[index + width] - values[index - width]);
-    (along_row * along_row + along_column * along_column).sqrt()
+impl Inside {
+    /// Where runs of up to `lanes` samples of one row start, in order.
+    fn starts(&self, lanes: usize) -> impl Iterator<Item = usize> {
+        let (width, border) = (self.width, self.border);
+        let rows = border..self.height.saturating_sub(border);
+        let columns = move || (border..width.saturating_sub(border)).step_by(lanes);
+        rows.flat_map(move |y| columns().map(move |x| y * width + x))
+    }
+
+    /// Lists the samples of the run at `start` whose bit is set.
+    #[inline(always)]
+    fn list(&self, start: usize, mut bits: u64, list: &mut Vec<u32>) {
+        if bits == 0 {
+            return;
+        }
+        let left = self.width - self.border - start % self.width;
+        while bits.trailing_zeros() < left.min(64) as u32 {
+            list.push(start as u32 + bits.trailing_zeros());
+            bits &= bits - 1;
+        }
+    }
 }
 
-/// Whether any neighbour of the inner sample `index` differs from it.
-pub(super) fn varies(values: &[f32], width: usize, index: usize) -> bool {
-    let neighbours = [index - 1, index + 1, index - width, index + width];
-    neighbours
-        .iter()
-        .any(|neighbour| values[*neighbour] != values[index])
+/// Lists the samples that bend more than `absolute + relative * spread` within themselves.
+///
+/// How far a column departs from a plane within one sample are the second-order terms of its Taylor
+/// series at the corner of the sample.
+#[simd]
+pub(super) fn list_bent<S: Simd>(
+    simd: S,
+    values: &[f32],
+    inside: &Inside,
+    [absolute, relative]: [f32; 2],
+    list: &mut Vec<u32>,
+) {
+    let width = inside.width;
+    for start in inside.starts(S::f32s::LEN) {
+        let (above, below) = (start - width, start + width);
+        let [north_west, north, north_east] = load_three(simd, values, above);
+        let [west, here, east] = load_three(simd, values, start);
+        let [south_west, south, south_east] = load_three(simd, values, below);
+        let (row, column) = ((east - west) * 0.5, (south - north) * 0.5);
+        let mixed = ((south_east - south_west) - (north_east - north_west)) * 0.25;
+        let along_row = east - here * 2.0 + west;
+        let along_column = south - here * 2.0 + north;
+        let bend = (along_row.abs() + along_column.abs()) * 0.125 + mixed.abs() * 0.25;
+        let spread = (row * row + column * column).sqrt();
+        let bent = bend.simd_gt(spread * relative + absolute);
+        inside.list(start, bent.to_bitmask(), list);
+    }
+}
+
+/// Lists the samples that differ from any of their neighbours in a row or column, in any of some columns.
+#[simd]
+pub(super) fn list_varying<S: Simd>(
+    simd: S,
+    columns: &[&[f32]],
+    inside: &Inside,
+    list: &mut Vec<u32>,
+) {
+    let width = inside.width;
+    for start in inside.starts(S::f32s::LEN) {
+        let mut bits = 0;
+        for values in columns {
+            let here = load(simd, values, start);
+            for neighbour in [start - 1, start + 1, start - width, start + width] {
+                bits |= load(simd, values, neighbour).simd_ne(here).to_bitmask();
+            }
+        }
+        inside.list(start, bits, list);
+    }
+}
+
+/// Vectors of the values before, at and after `start`.
+#[inline(always)]
+fn load_three<S: Simd>(simd: S, values: &[f32], start: usize) -> [S::f32s; 3] {
+    [
+        load(simd, values, start - 1),
+        load(simd, values, start),
+        load(simd, values, start + 1),
+    ]
+}
+
+/// A vector of the values from `start` on; zeros behind their end.
+#[inline(always)]
+fn load<S: Simd>(simd: S, values: &[f32], start: usize) -> S::f32s {
+    if let Some(values) = values.get(start..start + S::f32s::LEN) {
+        return S::f32s::from_slice(simd, values);
+    }
+    let mut rest = [0.0; 16];
+    for (to, value) in rest.iter_mut().zip(&values[start..]) {
+        *to = *value;
+    }
+    S::f32s::from_slice(simd, &rest[..S::f32s::LEN])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fearless_simd::{Level, dispatch};
+
+    fn bent(values: &[f32], width: usize, allowed: [f32; 2]) -> Vec<u32> {
+        let (height, border) = (values.len() / width, 1);
+        let inside = Inside {
+            width,
+            height,
+            border,
+        };
+        let mut list = vec![];
+        dispatch!(Level::new(), simd => list_bent(simd, values, &inside, allowed, &mut list));
+        list
+    }
 
     #[test]
     fn spread_of_a_plane_is_its_gradient_and_it_does_not_bend() {
@@ -86,7 +182,31 @@ mod tests {
         write_spread(&values, [7, 5], &mut along);
         assert!(along[0].iter().all(|d| *d == 2.0));
         assert!(along[1].iter().all(|d| *d == -3.0));
-        assert_eq!(bend(&values, 7, 8), 0.0);
+        assert!(bent(&values, 7, [0.0; 2]).is_empty());
+    }
+
+    /// In a wide grid, so that rows are several vectors long.
+    #[test]
+    fn a_bump_bends_itself_and_its_neighbours() {
+        let (width, at) = (41, 5 * 41 + 30);
+        let mut values = vec![1.0; 41 * 9];
+        values[at] = 2.0;
+        let around = |row: usize| at + row * width - width - 1..at + row * width - width + 2;
+        let neighbours: Vec<u32> = (0..3).flat_map(around).map(|index| index as u32).collect();
+        assert_eq!(bent(&values, width, [0.0; 2]), neighbours);
+        // 0.5 at the bump, 0.125 beside it, 0.0625 at the corners.
+        assert_eq!(bent(&values, width, [0.2, 0.0]), [at as u32]);
+        assert_eq!(bent(&values, width, [0.0625, 0.0]).len(), 5);
+        let inside = Inside {
+            width,
+            height: 9,
+            border: 1,
+        };
+        let mut varying = vec![];
+        let columns = [&values[..]];
+        dispatch!(Level::new(), simd => list_varying(simd, &columns, &inside, &mut varying));
+        let expected = [at - width, at - 1, at, at + 1, at + width].map(|index| index as u32);
+        assert_eq!(varying, expected);
     }
 
     #[test]

@@ -3,7 +3,9 @@
 
 use super::compile::{KernelStep, Within};
 use super::run::{RunContext, Scratch};
-use super::{PixelGrid, Samples, Sampling, spread};
+use super::spread::{self, Inside};
+use super::{PixelGrid, Samples, Sampling};
+use fearless_simd::{Level, dispatch};
 
 /// Samples along each side of a supersampled pixel.
 const SIDE: usize = 4;
@@ -23,7 +25,7 @@ pub(super) fn supersample(
     let Samples::Grid { target, grid } = samples else {
         return;
     };
-    let pixels = pixels_to_supersample(scratch, step, grid);
+    let pixels = pixels_to_supersample(scratch, step, grid, context.level);
     if pixels.is_empty() {
         return;
     }
@@ -55,33 +57,39 @@ pub(super) fn supersample(
 
 /// Indices of the samples where the kernel needs help, in order. Only samples that somebody reads and
 /// whose neighbours are known are looked at, so the answer does not depend on the tile.
-fn pixels_to_supersample(scratch: &Scratch, step: &KernelStep, grid: &PixelGrid) -> Vec<u32> {
-    let border = grid.margin.saturating_sub(step.margin).max(1);
-    let inside = (border..grid.height.saturating_sub(border))
-        .flat_map(|y| (border..grid.width - border).map(move |x| y * grid.width + x));
+fn pixels_to_supersample(
+    scratch: &Scratch,
+    step: &KernelStep,
+    grid: &PixelGrid,
+    level: Level,
+) -> Vec<u32> {
+    let inside = &Inside {
+        width: grid.width,
+        height: grid.height,
+        border: grid.margin.saturating_sub(step.margin).max(1),
+    };
+    let mut pixels = vec![];
+    let list = &mut pixels;
     match step.kernel.sampling() {
-        Sampling::Filtered => vec![],
+        Sampling::Filtered => {}
         Sampling::Supersampled => {
-            let varies = |index: &usize| {
-                step.inputs
-                    .iter()
-                    .any(|slot| spread::varies(scratch.column(*slot), grid.width, *index))
-            };
-            inside.filter(varies).map(|index| index as u32).collect()
+            let columns: Vec<&[f32]> = step
+                .inputs
+                .iter()
+                .map(|slot| scratch.column(*slot))
+                .collect();
+            dispatch!(level, simd => spread::list_varying(simd, &columns, inside, list));
         }
         Sampling::FilteredWhereStraight {
             column,
             absolute,
             relative,
         } => {
-            let values = scratch.column(step.inputs[column]);
-            let bends = |index: &usize| {
-                spread::bend(values, grid.width, *index)
-                    > absolute + relative * spread::size(values, grid.width, *index)
-            };
-            inside.filter(bends).map(|index| index as u32).collect()
+            let (values, allowed) = (scratch.column(step.inputs[column]), [absolute, relative]);
+            dispatch!(level, simd => spread::list_bent(simd, values, inside, allowed, list));
         }
     }
+    pixels
 }
 
 /// The mean of a pixel's samples without their margin, added up in a fixed order.

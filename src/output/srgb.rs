@@ -66,9 +66,10 @@ impl Buckets {
 
 /// Linear values to 8-bit codes.
 pub(super) struct Srgb8 {
-    limits: [f32; 257],
-    /// The code of the start of each bucket; no bucket holds more than one limit.
-    guesses: [u8; Srgb8::BUCKETS.count()],
+    /// For each bucket, of `2^16` floats, a number to which the distance from its start is added: the high
+    /// half of the sum is the code. A limit inside the bucket is where the low half overflows; no bucket
+    /// holds more than one.
+    entries: [u32; Srgb8::BUCKETS.count()],
 }
 
 impl Srgb8 {
@@ -84,20 +85,24 @@ impl Srgb8 {
     }
 
     fn new() -> Srgb8 {
-        let limits: [f32; 257] = limits(255).try_into().expect("255 limits and two ends");
-        let guesses = std::array::from_fn(|bucket| {
+        let limits = limits(255);
+        let entry = |bucket| {
             let start = Srgb8::BUCKETS.start(bucket);
-            (limits.partition_point(|limit| *limit <= start) - 1) as u8
-        });
-        Srgb8 { limits, guesses }
+            let code = limits.partition_point(|limit| *limit <= start) - 1;
+            let until_limit = limits[code + 1].to_bits().saturating_sub(start.to_bits());
+            ((code as u32) << 16) + (1u32 << 16).saturating_sub(until_limit)
+        };
+        Srgb8 {
+            entries: std::array::from_fn(entry),
+        }
     }
 
     /// The code nearest to the sRGB encoding of `linear`; what lies outside 0 to 1 is clamped, NaN is 0.
     #[inline]
     pub(super) fn code(&self, linear: f32) -> u8 {
         let linear = Srgb8::BUCKETS.clamp(linear);
-        let guess = self.guesses[Srgb8::BUCKETS.of(linear)];
-        guess + u8::from(linear >= self.limits[usize::from(guess) + 1])
+        let along = linear.to_bits() & 0xffff;
+        ((self.entries[Srgb8::BUCKETS.of(linear)] + along) >> 16) as u8
     }
 }
 
@@ -159,8 +164,9 @@ mod tests {
 
     #[test]
     fn every_limit_of_8_bits_is_the_first_value_of_its_code() {
+        let limits = limits(255);
         for code in 1..=255u8 {
-            let first = Srgb8::get().limits[usize::from(code)];
+            let first = limits[usize::from(code)];
             assert_eq!(nearest(first, 255.0), u32::from(code));
             assert_eq!(nearest(first.next_down(), 255.0), u32::from(code) - 1);
             assert_eq!(Srgb8::get().code(first), code);

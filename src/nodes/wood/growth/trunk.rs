@@ -2,6 +2,7 @@
 
 use super::GrowthModel;
 use super::heights::Heights;
+use crate::field::transposed;
 use crate::geometry::spline::Piece;
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
@@ -186,25 +187,4 @@ fn squares_of_four<S: Simd>(
     let dx = (f32x4::from_slice(simd, x) - x0) - h * (h * (h * x3 + x2) + x1);
     let dy = (f32x4::from_slice(simd, y) - y0) - h * (h * (h * y3 + y2) + y1);
     dx * dx + dy * dy
-}
-
-/// Columns from rows.
-#[inline(always)]
-fn transposed<S: Simd>(simd: S, [a, b, c, d]: [&[f32; 4]; 4]) -> [f32x4<S>; 4] {
-    let (a, b) = (
-        f32x4::load_array_ref(simd, a),
-        f32x4::load_array_ref(simd, b),
-    );
-    let (c, d) = (
-        f32x4::load_array_ref(simd, c),
-        f32x4::load_array_ref(simd, d),
-    );
-    let (low_ac, high_ac) = (a.zip_low(c), a.zip_high(c));
-    let (low_bd, high_bd) = (b.zip_low(d), b.zip_high(d));
-    [
-        low_ac.zip_low(low_bd),
-        low_ac.zip_high(low_bd),
-        high_ac.zip_low(high_bd),
-        high_ac.zip_high(high_bd),
-    ]
 }

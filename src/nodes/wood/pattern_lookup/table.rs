@@ -2,229 +2,175 @@
 //!
 //! The table is a chain of pieces on which colour and position are linear, with the integral up to the
 //! start of each: an average is the difference of two integrals (summed-area tables, Crow 1984, in one
-//! dimension), whole periods in closed form. What is left of the first piece and what is used of the last
-//! are added as they are, so that short spans lose no digits.
+//! dimension), whole periods in closed form. Integrals are f64, so that short spans lose no digits.
 
-use super::span::{BLOCK, Spans};
+use super::rings::Rings;
+use super::span::{Ends, Spans};
 use crate::value::{AfterEnd, ColourPattern};
-
-/// Spans shorter than this part of a texel are points.
-pub(super) const POINT: f64 = 1e-5;
-
-/// Largest number of tables between time 0 and a sample: no f32 has a fraction there any more.
-pub(super) const FARTHEST: f64 = 1e9;
+use fearless_simd::f64x4;
+use fearless_simd::prelude::*;
+use fearless_simd_macros::simd;
 
 /// Red, green, blue, position in the ring.
-type Lanes = [f32; 4];
+pub(super) type Lanes = [f32; 4];
 
-/// Pieces and rings of a pattern.
+/// The pieces of a pattern, and where rings begin in them.
 #[derive(Debug)]
 pub(super) struct Table {
     pub(super) years: f64,
     pub(super) frequency: f64,
-    pub(super) texels_per_year: f64,
+    pub(super) pieces_per_year: f64,
     pub(super) repeats: bool,
-    /// From texel borders to piece borders: 0.5 where colours are interpolated between centres.
-    pub(super) offset: f64,
-    /// Where the last piece ends, in pieces.
-    length: f32,
+    /// Pieces between the start and the end of the table.
+    pub(super) count: f32,
+    /// One before the start, those of the table, one behind the end.
     pieces: Vec<Piece>,
-    /// What one whole period, or one texel before the start, adds to an integral.
-    lead: [f64; 4],
-    /// Empty where the pieces hold the position.
-    rings: Vec<Ring>,
-    /// The ring that holds the start of each piece.
-    ring_of: Vec<u32>,
+    /// What one whole period adds to an integral.
+    period: [f64; 4],
+    rings: Rings,
 }
 
-/// The value is `value + 2 slope g` at the distance g, in texels, from the start of the piece.
+/// At the distance g, in pieces, from the start of the piece the value is `value + 2 slope g`, and the
+/// integral from the start of the table `integral + g (value + slope g)`.
 #[derive(Clone, Debug)]
+#[repr(align(32))]
 struct Piece {
-    value: Lanes,
+    value: [f64; 4],
     /// Half the change over the piece.
-    slope: Lanes,
-    /// Integral in texels from the start of the table to the start of the piece.
+    slope: [f64; 4],
     integral: [f64; 4],
 }
 
-/// A ring, in years from the start of the table.
-#[derive(Clone, Debug)]
-struct Ring {
-    start: f64,
-    reciprocal: f64,
+impl Piece {
+    /// A piece of one colour.
+    fn even([red, green, blue]: [f32; 3], position: f64, integral: [f64; 4]) -> Piece {
+        let [red, green, blue] = [red, green, blue].map(f64::from);
+        Piece {
+            value: [red, green, blue, position],
+            slope: [0.0; 4],
+            integral,
+        }
+    }
 }
 
 impl Table {
     /// Prepares a pattern.
     pub(super) fn new(pattern: &ColourPattern) -> Table {
-        let repeats = pattern.after_end == AfterEnd::Repeat;
-        let texels = pattern.colours.len() as f64;
-        let offset = if pattern.smooth { 0.5 } else { 0.0 };
-        let pieces = pieces(&pattern.colours, pattern.smooth);
-        let [red, green, blue] = pattern.colours[0];
-        let total = pieces[pieces.len() - 2].integral;
-        let lead = if repeats {
-            total
-        } else {
-            [red, green, blue, 0.0].map(f64::from)
-        };
-        let several = pattern.ring_starts.len() > 1;
-        let rings = if several {
-            rings(&pattern.ring_starts, pattern.years)
-        } else {
-            vec![]
-        };
-        let ring_of = |piece: usize| {
-            let start = (piece as f64 - offset) / texels * pattern.years;
-            rings.partition_point(|ring| ring.start <= start).max(1) as u32 - 1
-        };
+        // Between texel centres colours are linear, so borders of pieces lie at borders and at centres.
+        let pieces_per_texel = if pattern.smooth { 2 } else { 1 };
+        let count = pieces_per_texel * pattern.colours.len();
+        let rings = Rings::new(&pattern.ring_starts, count);
+        let pieces = pieces(pattern, count, &rings);
         Table {
             years: pattern.years,
             frequency: 1.0 / pattern.years,
-            texels_per_year: texels / pattern.years,
-            repeats,
-            offset,
-            length: (texels + offset) as f32,
-            lead,
-            ring_of: (0..pieces.len()).map(ring_of).collect(),
+            pieces_per_year: count as f64 / pattern.years,
+            repeats: pattern.after_end == AfterEnd::Repeat,
+            count: count as f32,
+            period: pieces[count + 1].integral,
             pieces,
             rings,
         }
     }
 
-    /// The mean colours and positions of spans.
-    #[inline(always)]
-    pub(super) fn means(&self, spans: &Spans, means: &mut [Lanes; BLOCK]) {
-        for (index, mean) in means.iter_mut().enumerate() {
-            let (first, last) = (spans.starts.piece[index], spans.ends.piece[index]);
-            let (from, to) = (spans.starts.along[index], spans.ends.along[index]);
-            let lead = f64::from(spans.lead[index]);
-            let start = &self.pieces[first as usize];
-            *mean = if first == last && lead == 0.0 {
-                let middle = from + to;
-                lanes(|lane| start.value[lane] + start.slope[lane] * middle)
-            } else {
-                let after = &self.pieces[first as usize + 1];
-                let end = &self.pieces[last as usize];
-                // The first and the last piece may be halves.
-                let border = (self.length - first as f32).min(1.0);
-                let begin = (self.offset as f32 - last as f32).max(0.0);
-                let [rest, used] = [border - from, to - begin];
-                let scale = spans.scale[index];
-                lanes(|lane| {
-                    let tail = rest * (start.value[lane] + start.slope[lane] * (border + from));
-                    let head = used * (end.value[lane] + end.slope[lane] * (to + begin));
-                    let whole = end.integral[lane] - after.integral[lane];
-                    ((tail + head) + (whole + lead * self.lead[lane]) as f32) * scale
-                })
-            };
+    /// Writes the mean colours and positions of spans.
+    #[simd]
+    pub(super) fn means<S: Simd>(&self, simd: S, spans: &Spans, means: &mut [Lanes]) {
+        match spans.boxes {
+            0 => self.means_of::<S, 0>(simd, spans, means),
+            1 => self.means_of::<S, 1>(simd, spans, means),
+            _ => self.means_of::<S, 2>(simd, spans, means),
         }
-        if !self.rings.is_empty() {
-            self.positions(spans, means);
+        if self.rings.are_several() {
+            self.rings.correct(spans, means, self.period[3]);
         }
     }
 
-    /// The mean positions where there are several rings: linear in each of them.
-    #[inline(always)]
-    fn positions(&self, spans: &Spans, means: &mut [Lanes; BLOCK]) {
-        let periods = if self.repeats { 0.5 * self.years } else { 0.0 };
-        for (index, mean) in means.iter_mut().enumerate() {
-            let (from, to, lead) = (spans.from[index], spans.to[index], spans.lead[index]);
-            let start = self.ring(spans.starts.piece[index], from);
-            let end = self.ring(spans.ends.piece[index], to);
-            mean[3] = if start.start == end.start && lead == 0.0 {
-                ((0.5 * (from + to) - start.start) * start.reciprocal) as f32
-            } else {
-                let whole = (0.5 * (end.start - start.start)) + f64::from(lead) * periods;
-                let sum = whole + end.part(to) - start.part(from);
-                (sum * self.texels_per_year) as f32 * spans.scale[index]
-            };
+    #[simd]
+    fn means_of<S: Simd, const BOXES: usize>(&self, simd: S, spans: &Spans, means: &mut [Lanes]) {
+        for (pair, means) in means.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            let first = self.mean::<S, BOXES>(simd, spans, 2 * pair);
+            let second = self.mean::<S, BOXES>(simd, spans, 2 * pair + 1);
+            first.narrow(second).store_slice(means.as_flattened_mut());
         }
     }
 
     #[inline(always)]
-    fn ring(&self, piece: u32, at: f64) -> &Ring {
-        let mut index = self.ring_of[piece as usize] as usize;
-        while index + 1 < self.rings.len() && self.rings[index + 1].start <= at {
-            index += 1;
+    fn mean<S: Simd, const BOXES: usize>(&self, simd: S, spans: &Spans, index: usize) -> f64x4<S> {
+        let [low, high, second_low, second_high] = &spans.ends;
+        if BOXES == 0 || spans.scale[index] == 0.0 {
+            return self.value(simd, low, index);
         }
-        &self.rings[index]
+        let mut sum = self.integral(simd, high, index) - self.integral(simd, low, index);
+        if BOXES == 2 {
+            let high = self.integral(simd, second_high, index);
+            sum += high - self.integral(simd, second_low, index);
+        }
+        let periods = f64x4::load_array_ref(simd, &self.period) * spans.periods[index];
+        (sum + periods) * spans.scale[index]
+    }
+
+    #[inline(always)]
+    fn value<S: Simd>(&self, simd: S, ends: &Ends, index: usize) -> f64x4<S> {
+        let piece = self.piece(ends.piece[index]);
+        let slope = f64x4::load_array_ref(simd, &piece.slope);
+        slope * (2.0 * ends.along[index]) + f64x4::load_array_ref(simd, &piece.value)
+    }
+
+    #[inline(always)]
+    fn integral<S: Simd>(&self, simd: S, ends: &Ends, index: usize) -> f64x4<S> {
+        let (piece, along) = (self.piece(ends.piece[index]), ends.along[index]);
+        let slope = f64x4::load_array_ref(simd, &piece.slope);
+        let mean = slope * along + f64x4::load_array_ref(simd, &piece.value);
+        mean * along + f64x4::load_array_ref(simd, &piece.integral)
+    }
+
+    #[inline(always)]
+    fn piece(&self, index: i32) -> &Piece {
+        &self.pieces[index as usize]
     }
 }
 
-impl Ring {
-    /// The integral of the position from the start of the ring; over a whole ring it is half the width.
-    #[inline(always)]
-    fn part(&self, to: f64) -> f64 {
-        let along = to - self.start;
-        0.5 * along * along * self.reciprocal
-    }
-}
-
-fn rings(starts: &[f64], years: f64) -> Vec<Ring> {
-    // 5 / 47 * 47 has to be 5, or the first sample of a year would fall into the year before.
-    let start = |start: &f64| {
-        let start = start * years;
-        if (start - start.round()).abs() < 1e-9 {
-            start.round()
-        } else {
-            start
+/// Where interpolated, pieces are half a texel long: at the ends of the table the colour stays that of the
+/// outermost centre. The pieces around the table go on with the first and the last colour.
+fn pieces(pattern: &ColourPattern, count: usize, rings: &Rings) -> Vec<Piece> {
+    let (colours, smooth) = (&pattern.colours, pattern.smooth);
+    let last = colours.len() - 1;
+    let border = |piece: usize| match (smooth, piece.is_multiple_of(2)) {
+        (false, _) => colours[piece.min(last)].map(f64::from),
+        (true, false) => colours[piece / 2].map(f64::from),
+        (true, true) => {
+            let (before, after) = (
+                colours[(piece / 2).max(1) - 1],
+                colours[(piece / 2).min(last)],
+            );
+            [0, 1, 2].map(|part| 0.5 * (f64::from(before[part]) + f64::from(after[part])))
         }
-    };
-    let starts: Vec<f64> = starts.iter().map(start).collect();
-    let ends = starts.iter().skip(1).chain([&years]);
-    let ring = |(start, end): (&f64, &f64)| Ring {
-        start: *start,
-        reciprocal: 1.0 / (end - start),
-    };
-    starts.iter().zip(ends).map(ring).collect()
-}
-
-/// Without interpolation one piece for each texel; with it one from centre to centre, and half ones at
-/// the ends, where the colour stays that of the outermost centre. Two more follow, so that rounding past
-/// the end meets the last colour.
-fn pieces(colours: &[[f32; 3]], smooth: bool) -> Vec<Piece> {
-    let count = colours.len();
-    let position = |border: f64| (border / count as f64) as f32;
-    let colour = |index: usize| colours[index.min(count - 1)];
-    let ends = |index: usize| match smooth {
-        true => (colour(index.max(1) - 1), colour(index), index as f64 - 0.5),
-        false => (colour(index), colour(index), index as f64),
     };
     let mut integral = [0.0; 4];
     let piece = |index: usize| {
-        let ([red, green, blue], next, border) = ends(index);
-        let beyond = border >= count as f64;
-        let value = [red, green, blue, position(border.min(count as f64))];
-        let next = [
-            next[0],
-            next[1],
-            next[2],
-            if beyond { 1.0 } else { position(border + 1.0) },
-        ];
-        let slope = lanes(|lane| 0.5 * (next[lane] - value[lane]));
-        let piece = Piece {
+        let ([red, green, blue], end) = (border(index), border(index + usize::from(smooth)));
+        let (position, rise) = rings.along_piece(index);
+        let value = [red, green, blue, position];
+        let change = [end[0] - red, end[1] - green, end[2] - blue, rise];
+        let (slope, start) = (change.map(|change| 0.5 * change), integral);
+        for part in 0..3 {
+            integral[part] += value[part] + slope[part];
+        }
+        integral[3] = rings.integral((index + 1) as f64);
+        Piece {
             value,
             slope,
-            integral,
-        };
-        // The first and the last piece are halves: from the border of the table to a centre.
-        let [begin, end] = match index {
-            _ if !smooth => [0.0, 1.0],
-            0 => [0.5, 1.0],
-            _ => [0.0, if index == count { 0.5 } else { 1.0 }],
-        };
-        for lane in 0..4 {
-            let [value, slope] = [value[lane], slope[lane]].map(f64::from);
-            integral[lane] += (end - begin) * (value + slope * (end + begin));
+            integral: start,
         }
-        piece
     };
-    let inside = if smooth { count + 1 } else { count };
-    (0..inside + 2).map(piece).collect()
-}
-
-#[inline(always)]
-fn lanes(lane: impl Fn(usize) -> f32) -> Lanes {
-    [lane(0), lane(1), lane(2), lane(3)]
+    let inside: Vec<Piece> = (0..count).map(piece).collect();
+    // The first one starts at -1, so that integrals are 0 at the start of the table.
+    let first = colours[0].map(|part| -f64::from(part));
+    let before = Piece::even(colours[0], 0.0, [first[0], first[1], first[2], 0.0]);
+    let after = Piece::even(colours[last], 1.0, integral);
+    std::iter::once(before)
+        .chain(inside)
+        .chain([after])
+        .collect()
 }
