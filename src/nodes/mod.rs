@@ -1,6 +1,7 @@
 //! The kinds of nodes, in families: one file each, and one line each in the table below.
 
 pub mod cut;
+pub mod field;
 pub mod noise;
 pub mod output;
 pub mod surface;
@@ -23,6 +24,15 @@ pub static KINDS: &[&Kind] = &[
     &noise::solid_noise::KIND,
     &noise::plane_noise::KIND,
     &noise::distort::KIND,
+    &field::position::KIND,
+    &field::combine::KIND,
+    &field::separate::KIND,
+    &field::math::KIND,
+    &field::vector_math::KIND,
+    &field::remap::KIND,
+    &field::threshold::KIND,
+    &field::ramp::KIND,
+    &field::adjust_colour::KIND,
 ];
 
 /// The kind called `name`.
