@@ -33,6 +33,9 @@ pub static KINDS: &[&Kind] = &[
     &field::threshold::KIND,
     &field::ramp::KIND,
     &field::adjust_colour::KIND,
+    &field::transform::KIND,
+    &field::transform_field::KIND,
+    &surface::blend::KIND,
 ];
 
 /// The kind called `name`.

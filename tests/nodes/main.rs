@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
+mod blends;
 mod colours;
 mod numbers;
+mod transforms;
 
 use fearless_simd::Level;
 use std::path::Path;

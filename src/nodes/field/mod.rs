@@ -3,10 +3,13 @@
 pub mod adjust_colour;
 pub mod combine;
 pub mod math;
+mod placement;
 pub mod position;
 mod profile;
 pub mod ramp;
 pub mod remap;
 pub mod separate;
 pub mod threshold;
+pub mod transform;
+pub mod transform_field;
 pub mod vector_math;

@@ -3,7 +3,7 @@
 //! The edge is averaged exactly over what a pixel covers, so a hard one is as wide as the pixel and no wider.
 
 use super::profile::{Along, Ends, Piece, Profile, hermite};
-use crate::field::{Block, Kernel};
+use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Type, Unit, Value};
@@ -59,12 +59,20 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         Difference,
         vec![inputs.field("value"), inputs.field("edge")],
     );
-    let mask = above(inputs.number("width"), inputs.choice("curve") == "smooth");
+    let mask = Along {
+        kind: (KIND.name, KIND.version),
+        profile: above(inputs.number("width"), inputs.choice("curve") == "smooth"),
+    };
+    Ok(vec![Value::Field(build.kernel(mask, vec![difference]))])
+}
+
+/// From 0 to 1 along an S of `width` around the value 0: the mask of other kinds.
+pub(in crate::nodes) fn transition(build: &Build<'_>, value: Field, width: f64) -> Field {
     let kernel = Along {
         kind: (KIND.name, KIND.version),
-        profile: mask,
+        profile: above(width, true),
     };
-    Ok(vec![Value::Field(build.kernel(kernel, vec![difference]))])
+    build.kernel(kernel, vec![value])
 }
 
 /// The step at 0 with a transition of `width` around it.

@@ -41,7 +41,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let mode = inputs.choice("mode");
     let inputs = ["a", "b", "amount"].map(|name| inputs.field(name));
     Ok(vec![Value::Field(
-        build.kernel(Mix { mode }, inputs.into()),
+        build.kernel(Mix { mode, width: 3 }, inputs.into()),
     )])
 }
 
@@ -81,13 +81,13 @@ fn blended(mode: &str, a: f32, b: f32) -> f32 {
     }
 }
 
-/// The amount's column, behind those of the two colours.
-const AMOUNT: usize = 6;
-
-/// Columns in: three of `a`, three of `b`, amount.
+/// Columns in: `width` of `a`, `width` of `b`, amount.
 #[derive(Debug)]
-struct Mix {
-    mode: &'static str,
+pub(super) struct Mix {
+    /// What `b` does to `a`.
+    pub(super) mode: &'static str,
+    /// Columns of the values that are mixed.
+    pub(super) width: usize,
 }
 
 impl Kernel for Mix {
@@ -98,7 +98,7 @@ impl Kernel for Mix {
     }
 
     fn width(&self) -> usize {
-        3
+        self.width
     }
 
     fn sampling(&self) -> Sampling {
@@ -106,19 +106,19 @@ impl Kernel for Mix {
             return Sampling::Supersampled;
         }
         Sampling::FilteredWhereStraight {
-            column: AMOUNT,
+            column: 2 * self.width,
             absolute: 0.08,
             relative: 0.0,
         }
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let amounts = block.inputs[AMOUNT].values;
+        let amounts = block.inputs[2 * self.width].values;
         for (part, output) in block.outputs.iter_mut().enumerate() {
             let colours = block.inputs[part]
                 .values
                 .iter()
-                .zip(block.inputs[3 + part].values);
+                .zip(block.inputs[self.width + part].values);
             for ((output, (a, b)), amount) in output.iter_mut().zip(colours).zip(amounts) {
                 let amount = amount.clamp(0.0, 1.0);
                 // Exact at both ends, which a + (b - a) * amount is not.
