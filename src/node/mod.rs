@@ -4,9 +4,11 @@
 //! over every kind. Start from `CONTRIBUTING.md`, and from `src/nodes/wood/pattern_lookup.rs`.
 
 mod inputs;
+mod ledger;
 
 pub(crate) use inputs::field_of;
 pub use inputs::{Build, Failure, Inputs, common_domain};
+pub(crate) use ledger::Budget;
 
 use crate::value::{Domain, Type, Unit, Value};
 

@@ -6,6 +6,7 @@ mod blends;
 mod colours;
 mod numbers;
 mod transforms;
+mod trees;
 
 use fearless_simd::Level;
 use std::path::Path;
