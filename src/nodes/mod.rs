@@ -4,6 +4,7 @@ pub mod cut;
 pub mod field;
 pub mod noise;
 pub mod output;
+mod picture;
 pub mod surface;
 pub mod wood;
 
@@ -35,6 +36,7 @@ pub static KINDS: &[&Kind] = &[
     &field::adjust_colour::KIND,
     &field::transform::KIND,
     &field::transform_field::KIND,
+    &field::image_from_file::KIND,
     &surface::blend::KIND,
 ];
 

@@ -4,6 +4,7 @@
 
 mod blends;
 mod colours;
+mod images;
 mod numbers;
 mod transforms;
 mod trees;

@@ -2,6 +2,7 @@
 
 pub mod adjust_colour;
 pub mod combine;
+pub mod image_from_file;
 pub mod math;
 mod placement;
 pub mod position;
