@@ -180,6 +180,9 @@ fn hear(bar: &ProgressBar, json: bool, event: &Event) {
                 ));
             }
         }
+        Event::Warning { node, message } if !json => {
+            say(report::warning_of(node, message));
+        }
         Event::StoreFailed { reason } if !json => {
             say(format!(
                 "warning: the store of earlier results cannot be used: {reason}"

@@ -71,6 +71,11 @@ pub(super) fn problem(text: &str) {
     let _ = writeln!(io::stderr().lock(), "error: {text}");
 }
 
+/// A warning that a node gives while it is built.
+pub(super) fn warning_of(node: &str, message: &str) -> String {
+    format!("warning: node `{node}`: {message}")
+}
+
 /// Prints a line of the result; a closed pipe ends the program quietly.
 pub(super) fn line(text: &str) {
     if writeln!(io::stdout().lock(), "{text}").is_err() {

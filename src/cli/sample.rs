@@ -45,7 +45,11 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
             return Exit::Wrong;
         }
     };
-    let fields = match engine.fields(&graph, &arguments.node, &|_: Event| {}) {
+    let fields = match engine.fields(&graph, &arguments.node, &|event: Event| {
+        if let Event::Warning { node, message } = event {
+            eprintln!("{}", report::warning_of(&node, &message));
+        }
+    }) {
         Ok(fields) => fields,
         Err(error) => return report::run_error(&error, json),
     };

@@ -1,23 +1,22 @@
 //! Builds nodes in parallel, each as soon as the ones it reads are there.
 
-use super::event::{Event, From, Listener};
+use super::event::{Event, Listener};
 use super::memory::{Memory, Structure};
 use super::plan::Plan;
 use super::store::Store;
-use super::{Cancel, RunError, arithmetic, content};
+use super::{Cancel, RunError, arithmetic, content, reuse};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::field::Field;
 use crate::graph::{Binding, Link, Node, Source};
 use crate::key::{Key, KeyHasher};
-use crate::node::{Build, Failure, Inputs, field_of};
+use crate::node::{Budget, Build, Failure, Inputs, field_of};
 use crate::value::Value;
 use petgraph::Direction;
 use petgraph::graph::NodeIndex;
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, OnceLock, PoisonError};
-use std::time::Instant;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// What surrounds the building of nodes.
 pub(super) struct Builder<'a> {
@@ -25,6 +24,8 @@ pub(super) struct Builder<'a> {
     pub(super) store: Option<&'a Store>,
     pub(super) listener: &'a dyn Listener,
     pub(super) cancel: &'a Cancel,
+    /// Memory for decoded files that the run has left.
+    pub(super) budget: Arc<Budget>,
 }
 
 /// The built nodes of a plan.
@@ -71,6 +72,12 @@ impl Built {
         self.structure(node)
             .expect("only nodes that are there are asked for")
             .keys[output]
+    }
+
+    /// What a node warned of, if it is there.
+    pub(super) fn warnings(&self, node: NodeIndex) -> &[String] {
+        self.structure(node)
+            .map_or(&[], |structure| &structure.warnings)
     }
 
     fn structure(&self, node: NodeIndex) -> Option<&Structure> {
@@ -164,62 +171,31 @@ impl Builder<'_> {
                 node: &node.name,
                 seed: node.origin.seed,
             };
-            call(|| (node.kind.build)(&Inputs::new(node.kind, &inputs), &build))
-        };
-        if node.kind.is_structure() {
-            self.structure(node, resolver.content_key(), make).map(Some)
-        } else {
-            let values = make()?;
+            let inputs = Inputs::within(node.kind, &inputs, Arc::clone(&self.budget));
+            let values = call(|| (node.kind.build)(&inputs, &build))?;
             let keys = values.iter().map(content::key).collect();
-            Ok(Some(Structure { values, keys }))
-        }
-    }
-
-    /// A structure from memory, from the store, or made.
-    fn structure(
-        &self,
-        node: &Node,
-        key: Key,
-        make: impl FnOnce() -> Result<Vec<Value>, Failure>,
-    ) -> Result<Structure, Failure> {
-        let name = node.name.to_string();
-        if let Some(structure) = self.memory.structure(&key) {
-            self.listener.hear(Event::StructureReused {
-                node: name,
-                from: From::Memory,
-            });
-            return Ok(structure);
-        }
-        let start = Instant::now();
-        let stored = self.store.and_then(|store| store.get("structure", &key));
-        if let Some(bytes) = stored
-            && let Some(structure) = content::decode(node.kind, &bytes)
-        {
-            self.memory
-                .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
-            self.listener.hear(Event::StructureReused {
-                node: name,
-                from: From::Disk,
-            });
-            return Ok(structure);
-        }
-        let values = make()?;
-        let bytes = content::encode(&values);
-        let keys = values.iter().map(content::key).collect();
-        let structure = Structure { values, keys };
-        self.memory
-            .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
-        if let Some(Err(error)) = self.store.map(|store| store.put("structure", &key, &bytes)) {
-            self.listener.hear(Event::StoreFailed {
-                reason: error.to_string(),
+            let (warnings, taken) = inputs.close();
+            Ok(Structure {
+                values,
+                keys,
+                warnings,
+                taken,
+            })
+        };
+        let built = if node.kind.is_structure() {
+            self.structure(node, resolver.content_key(), make)?
+        } else if reuse::reads_files(node) {
+            self.decoded(node, resolver.content_key(), make)?
+        } else {
+            make()?
+        };
+        for message in &built.warnings {
+            self.listener.hear(Event::Warning {
+                node: node.name.to_string(),
+                message: message.clone(),
             });
         }
-        let milliseconds = nanoseconds(start) * 1e-6;
-        self.listener.hear(Event::StructureBuilt {
-            node: name,
-            milliseconds,
-        });
-        Ok(structure)
+        Ok(Some(built))
     }
 }
 
@@ -388,8 +364,4 @@ fn diagnose(plan: &Plan<'_>, index: NodeIndex, failure: Failure) -> Diagnostic {
         .in_node(&*node.name);
     diagnostic.hints.extend(failure.hint);
     diagnostic
-}
-
-fn nanoseconds(start: Instant) -> f64 {
-    start.elapsed().as_nanos() as f64
 }

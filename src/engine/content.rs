@@ -56,15 +56,15 @@ fn structure_bytes(value: &Value) -> Vec<u8> {
     bytes.expect("plain data always has bytes")
 }
 
-/// The outputs of a structure node as bytes.
-pub(super) fn encode(values: &[Value]) -> Vec<u8> {
+/// The outputs of a structure node, and what it warned of, as bytes.
+pub(super) fn encode(values: &[Value], warnings: &[String]) -> Vec<u8> {
     let parts: Vec<Vec<u8>> = values.iter().map(structure_bytes).collect();
-    postcard::to_stdvec(&parts).expect("plain data always has bytes")
+    postcard::to_stdvec(&(parts, warnings)).expect("plain data always has bytes")
 }
 
 /// The outputs of a node of `kind` from bytes; `None` if they are not what [`encode`] writes.
 pub(super) fn decode(kind: &Kind, bytes: &[u8]) -> Option<Structure> {
-    let parts: Vec<Vec<u8>> = postcard::from_bytes(bytes).ok()?;
+    let (parts, warnings): (Vec<Vec<u8>>, Vec<String>) = postcard::from_bytes(bytes).ok()?;
     if parts.len() != kind.outputs.len() {
         return None;
     }
@@ -80,5 +80,10 @@ pub(super) fn decode(kind: &Kind, bytes: &[u8]) -> Option<Structure> {
     let values: Option<Vec<Value>> = kind.outputs.iter().zip(&parts).map(decode).collect();
     let values = values?;
     let keys = values.iter().map(key).collect();
-    Some(Structure { values, keys })
+    Some(Structure {
+        values,
+        keys,
+        warnings,
+        taken: 0,
+    })
 }

@@ -97,6 +97,13 @@ pub enum Event {
         /// How long it took.
         milliseconds: f64,
     },
+    /// A node says something that the recipe's author should know.
+    Warning {
+        /// The node.
+        node: String,
+        /// What it says.
+        message: String,
+    },
     /// The store cannot be used; the run goes on without it.
     StoreFailed {
         /// What the operating system says.

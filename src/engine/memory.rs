@@ -17,6 +17,10 @@ pub(super) struct Structure {
     pub(super) values: Vec<Value>,
     /// The content key of each.
     pub(super) keys: Vec<Key>,
+    /// What the node warned of when it was built.
+    pub(super) warnings: Vec<String>,
+    /// Memory that it took for decoded files, in bytes.
+    pub(super) taken: u64,
 }
 
 /// Remembers structures and columns within a budget.

@@ -10,6 +10,7 @@ mod memory;
 mod paint;
 mod plan;
 mod render;
+mod reuse;
 mod sample;
 mod store;
 mod target;
@@ -157,6 +158,7 @@ impl Engine {
             memory: &self.memory,
             store: self.store.as_ref(),
             listener,
+            budget: std::sync::Arc::default(),
             cancel,
         };
         builder.build(plan)

@@ -106,7 +106,7 @@ impl<'g> Plan<'g> {
 }
 
 /// `wanted` and all they depend on, each node behind the ones it reads.
-fn ancestors(graph: &Graph, wanted: &[NodeIndex]) -> Vec<NodeIndex> {
+pub(super) fn ancestors(graph: &Graph, wanted: &[NodeIndex]) -> Vec<NodeIndex> {
     let mut needed = vec![false; graph.nodes.node_count()];
     let mut pending = wanted.to_vec();
     while let Some(node) = pending.pop() {

@@ -3,7 +3,7 @@
 use super::build::Built;
 use super::event::{Event, Listener};
 use super::paint::{Painter, Sheet};
-use super::plan::Plan;
+use super::plan::{Plan, ancestors};
 use super::store::Store;
 use super::{Cancel, Engine, FlatPiece, RESULTS, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
@@ -14,6 +14,7 @@ use crate::output::{self, Encoder, Faults, MapRequest};
 use crate::value::Maps;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -43,6 +44,14 @@ pub struct RenderedMap {
     pub channel: String,
     /// Its file.
     pub path: PathBuf,
+}
+
+/// What the store remembers of an output.
+#[derive(Debug, Serialize, Deserialize)]
+struct OutputRecord {
+    maps: Vec<WantedMap>,
+    /// The plan keys of nodes with what they warned of.
+    warnings: Vec<(Key, String)>,
 }
 
 /// A map that an output asks for.
@@ -79,12 +88,21 @@ impl Engine {
             index,
         };
         let outputs: Vec<Output<'_>> = wanted.into_iter().map(output).collect();
-        let known: Vec<Option<Vec<WantedMap>>> = outputs.iter().map(Output::known_maps).collect();
-        let pairs = || outputs.iter().zip(&known);
-        let missing = pairs().filter(|(_, known)| known.is_none());
+        let known: Vec<Option<OutputRecord>> = outputs.iter().map(Output::known_maps).collect();
+        let missing = outputs
+            .iter()
+            .zip(&known)
+            .filter(|(_, known)| known.is_none());
         let missing: Vec<NodeIndex> = missing.map(|(output, _)| output.index).collect();
         let rest = self.plan(request.graph, &missing)?;
         let built = self.build(&rest, request.listener, &request.cancel)?;
+        let mut repeated = BTreeSet::new();
+        for record in known.iter().flatten() {
+            repeat_warnings(record, request, &plan, &built, &mut repeated);
+        }
+        let known = known.into_iter().map(|record| Some(record?.maps));
+        let known: Vec<Option<Vec<WantedMap>>> = known.collect();
+        let pairs = || outputs.iter().zip(&known);
         let names = pairs().flat_map(|(output, known)| output.file_names(known.as_deref(), &built));
         files::refuse_shared(request.graph, names)?;
         let mut rendered = vec![];
@@ -98,6 +116,27 @@ impl Engine {
         }
         built.complete()?;
         Ok(rendered)
+    }
+}
+
+/// Says again what the nodes of an output warned of that need not be built any more.
+fn repeat_warnings<'r>(
+    record: &'r OutputRecord,
+    request: &Render<'_>,
+    plan: &Plan<'_>,
+    built: &Built,
+    repeated: &mut BTreeSet<(&'r Key, &'r str)>,
+) {
+    for (key, message) in &record.warnings {
+        let Some(node) = plan.order.iter().find(|node| plan.keys[node] == *key) else {
+            continue;
+        };
+        if !built.has(*node) && repeated.insert((key, message)) {
+            request.listener.hear(Event::Warning {
+                node: request.graph.nodes[*node].name.to_string(),
+                message: message.clone(),
+            });
+        }
     }
 }
 
@@ -150,15 +189,16 @@ impl Output<'_> {
     }
 
     /// The maps, if the store knows them all and they are in place or can be put there.
-    fn known_maps(&self) -> Option<Vec<WantedMap>> {
+    fn known_maps(&self) -> Option<OutputRecord> {
         let store = self.engine.store.as_ref()?;
         let bytes = store.get("plan", &self.plan_key())?;
-        let maps: Vec<WantedMap> = postcard::from_bytes(&bytes).ok()?;
-        let events: Option<Vec<Event>> = maps.iter().map(|map| self.in_place(store, map)).collect();
+        let record: OutputRecord = postcard::from_bytes(&bytes).ok()?;
+        let maps = record.maps.iter();
+        let events: Option<Vec<Event>> = maps.map(|map| self.in_place(store, map)).collect();
         events?
             .into_iter()
             .for_each(|event| self.request.listener.hear(event));
-        Some(maps)
+        Some(record)
     }
 
     fn path(&self, map: &WantedMap) -> PathBuf {
@@ -203,7 +243,7 @@ impl Output<'_> {
         } else {
             self.write_maps(maps, &target, &missing)?
         };
-        self.remember(&wanted, missing.into_iter().zip(faults));
+        self.remember(&wanted, built, missing.into_iter().zip(faults));
         let (output, milliseconds) = (self.name().to_owned(), start.elapsed().as_secs_f64() * 1e3);
         self.request.listener.hear(Event::OutputDone {
             output,
@@ -283,23 +323,39 @@ impl Output<'_> {
     fn remember<'m>(
         &self,
         wanted: &[WantedMap],
+        built: &Built,
         mut written: impl Iterator<Item = (&'m WantedMap, Faults)>,
     ) {
         let Some(store) = &self.engine.store else {
             return;
+        };
+        let record = OutputRecord {
+            maps: wanted.to_vec(),
+            warnings: self.warnings(built),
         };
         let stored = written
             .try_for_each(|(map, faults)| {
                 let faults = [faults.non_finite, faults.clamped];
                 store.put_map(&map.key, &self.path(map), faults)
             })
-            .and_then(|()| postcard::to_stdvec(wanted).map_err(io::Error::other))
+            .and_then(|()| postcard::to_stdvec(&record).map_err(io::Error::other))
             .and_then(|bytes| store.put("plan", &self.plan_key(), &bytes));
         if let Err(error) = stored {
             self.request.listener.hear(Event::StoreFailed {
                 reason: error.to_string(),
             });
         }
+    }
+
+    /// What the nodes that the output depends on warned of.
+    fn warnings(&self, built: &Built) -> Vec<(Key, String)> {
+        let nodes = ancestors(self.request.graph, &[self.index]).into_iter();
+        let said = |node: NodeIndex| {
+            let key = self.plan.keys[&node];
+            let warnings = built.warnings(node).iter();
+            warnings.map(move |message| (key, message.clone()))
+        };
+        nodes.flat_map(said).collect()
     }
 
     fn announce(&self, maps: Vec<WantedMap>) -> Vec<RenderedMap> {

@@ -1,6 +1,7 @@
 //! What a build function receives: checked inputs by name, and how it reports that it cannot go on.
 
 use super::Kind;
+use super::ledger::{Budget, Ledger};
 use crate::field::{Field, Kernel};
 use crate::value::{ColourPattern, Domain, FileContents, Material, Skeleton, Value};
 use glam::DVec3;
@@ -14,6 +15,8 @@ use std::sync::Arc;
 pub struct Inputs<'a> {
     kind: &'static Kind,
     values: &'a [Option<Value>],
+    ledger: Ledger,
+    budget: Arc<Budget>,
 }
 
 /// Why a node could not be built, in terms of the recipe.
@@ -86,7 +89,40 @@ macro_rules! readers {
 impl<'a> Inputs<'a> {
     /// Pairs the values with the kind that declares them.
     pub fn new(kind: &'static Kind, values: &'a [Option<Value>]) -> Inputs<'a> {
-        Inputs { kind, values }
+        Inputs::within(kind, values, Arc::default())
+    }
+
+    /// As [`Inputs::new`], with the memory for decoded files that the run has left.
+    pub(crate) fn within(
+        kind: &'static Kind,
+        values: &'a [Option<Value>],
+        budget: Arc<Budget>,
+    ) -> Inputs<'a> {
+        Inputs {
+            kind,
+            values,
+            ledger: Ledger::default(),
+            budget,
+        }
+    }
+
+    /// Warns of something that the recipe's author should know, in lower case and without a full stop. Every
+    /// run repeats it, also one that finds the result of an earlier one.
+    pub fn warn(&self, message: impl Into<String>) {
+        self.ledger.warn(message.into());
+    }
+
+    /// Takes memory for what is decoded from the file of input `input`: to be asked before decoding.
+    ///
+    /// # Errors
+    /// If the files of the recipe would take more than a run may.
+    pub fn take_memory(&self, input: &'static str, bytes: u64) -> Result<(), Failure> {
+        self.ledger.take(&self.budget, input, bytes)
+    }
+
+    /// The warnings, and the memory taken.
+    pub(crate) fn close(self) -> (Vec<String>, u64) {
+        self.ledger.close()
     }
 
     /// The value of an input, unless the recipe left it out.

@@ -5,9 +5,11 @@
 
 mod inputs;
 pub(crate) mod interned;
+mod ledger;
 
 pub(crate) use inputs::field_of;
 pub use inputs::{Build, Failure, Inputs, common_domain};
+pub(crate) use ledger::Budget;
 
 use crate::value::{Domain, Type, Unit, Value};
 

@@ -1,8 +1,10 @@
 //! The kinds of nodes, in families: one file each, and one line each in the table below.
 
 pub mod cut;
+pub mod field;
 pub mod noise;
 pub mod output;
+mod picture;
 pub mod surface;
 pub mod wood;
 
@@ -23,6 +25,19 @@ pub static KINDS: &[&Kind] = &[
     &noise::solid_noise::KIND,
     &noise::plane_noise::KIND,
     &noise::distort::KIND,
+    &field::position::KIND,
+    &field::combine::KIND,
+    &field::separate::KIND,
+    &field::math::KIND,
+    &field::vector_math::KIND,
+    &field::remap::KIND,
+    &field::threshold::KIND,
+    &field::ramp::KIND,
+    &field::adjust_colour::KIND,
+    &field::transform::KIND,
+    &field::transform_field::KIND,
+    &field::image_from_file::KIND,
+    &surface::blend::KIND,
 ];
 
 /// The kind called `name`.

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 /// A bundle of fields, by channel name.
 ///
 /// Standard channels are `base_color` (colour), `height` (mm), `roughness`, `metalness`,
-/// `occlusion` and `opacity` (ratios); any other name is an extra of the author's own.
+/// `occlusion` and `opacity` (ratios); any other name is an extra of the author's own. An extra `fibre` with three
+/// columns is the direction of the fibres.
 #[derive(Clone, Debug)]
 pub struct Material {
     /// Where the fields are defined.
@@ -16,6 +17,16 @@ pub struct Material {
     pub channels: BTreeMap<String, Field>,
     /// Width and height of the piece in mm, once it has been cut.
     pub size: Option<[f64; 2]>,
+}
+
+/// Channels that hold directions in the material: they turn with it, and a mean of them has length 1.
+const DIRECTION_CHANNELS: [&str; 1] = ["fibre"];
+
+impl Material {
+    /// Whether a channel holds directions: three columns under a name that stands for one.
+    pub fn is_direction(channel: &str, field: &Field) -> bool {
+        field.width() == 3 && DIRECTION_CHANNELS.contains(&channel)
+    }
 }
 
 /// How the samples of a map are written.

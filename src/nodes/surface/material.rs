@@ -3,7 +3,8 @@
 //! Every channel is defined where its input is; a material whose channels are all constant fits into a
 //! solid and onto a plane. Lengths are mm, colours linear Rec. 709, the rest ratios from 0 to 1.
 
-use crate::node::{Build, Failure, Input, Inputs, Kind, Output, common_domain, field_of};
+use crate::field::Field;
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output, Presence, common_domain, field_of};
 use crate::value::{Material, Type, Unit, Value};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -81,6 +82,17 @@ pub const STANDARD_CHANNELS: [&str; 6] = [
     "occlusion",
     "opacity",
 ];
+
+/// What a channel of `width` columns is where a material does not have it: the default of the input, 0 or black for
+/// extras.
+pub(super) fn default_of(channel: &str, width: usize) -> Field {
+    let declared = match KIND.input(channel).map(|(_, input)| input.presence) {
+        Some(Presence::Default(literal)) => literal.parse().ok(),
+        _ => None,
+    };
+    let number = declared.unwrap_or(0.0);
+    Field::constants(&vec![number; width])
+}
 
 fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let standard = STANDARD_CHANNELS.map(|name| (name.to_owned(), inputs.field(name)));

@@ -1,8 +1,11 @@
 //! `mix`: a colour between two colours, in linear light.
 //!
+//! A mode puts another colour in the place of `b`: the product of both, the lighter of both and so on.
+//!
 //! The inputs arrive averaged over the pixel, and what is mixed are the averages: exact where only the
 //! colours or only the amount change within a pixel. Amounts beyond 0 to 1 are clamped. Where the amount
-//! bends within a pixel, as at the rim of a knot, the mix is supersampled.
+//! bends within a pixel, as at the rim of a knot, the mix is supersampled; so are all pixels that vary where the
+//! mode is not linear.
 
 use crate::field::{Block, Kernel, Sampling};
 use crate::key::KeyHasher;
@@ -22,6 +25,12 @@ pub static KIND: Kind = Kind {
         Input::number("amount", Unit::One, "Share of `b`.")
             .per_point()
             .range(0.0, 1.0),
+        Input::new(
+            "mode",
+            Type::Choice(MODES),
+            "What `b` does to `a`, part by part and in linear light.",
+        )
+        .default("normal"),
     ],
     outputs: &[Output::field("colour", Type::Colour, "The mixed colour.")],
     example: r##"(nodes: { "example": mix(a: "#e8c79a", b: "#5b3a1e", amount: 0.25) })"##,
@@ -29,45 +38,91 @@ pub static KIND: Kind = Kind {
 };
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let mode = inputs.choice("mode");
     let inputs = ["a", "b", "amount"].map(|name| inputs.field(name));
-    Ok(vec![Value::Field(build.kernel(Mix, inputs.into()))])
+    Ok(vec![Value::Field(
+        build.kernel(Mix { mode, width: 3 }, inputs.into()),
+    )])
 }
 
-/// The amount's column, behind those of the two colours.
-const AMOUNT: usize = 6;
+/// What `b` can do; the arithmetic of each is in `blended`.
+const MODES: &[&str] = &[
+    "normal",
+    "multiply",
+    "screen",
+    "overlay",
+    "soft_light",
+    "add",
+    "subtract",
+    "difference",
+    "divide",
+    "darken",
+    "lighten",
+];
 
-/// Columns in: three of `a`, three of `b`, amount.
+/// One part of what the mode puts in the place of `b`.
+fn blended(mode: &str, a: f32, b: f32) -> f32 {
+    match mode {
+        "multiply" => a * b,
+        "screen" => 1.0 - (1.0 - a) * (1.0 - b),
+        "overlay" if a < 0.5 => 2.0 * a * b,
+        "overlay" => 1.0 - 2.0 * (1.0 - a) * (1.0 - b),
+        // Pegtop's formula: no kink at 1/2.
+        "soft_light" => (1.0 - 2.0 * b) * a * a + 2.0 * b * a,
+        "add" => a + b,
+        "subtract" => (a - b).max(0.0),
+        "difference" => (a - b).abs(),
+        // Nothing is lighter than white divided by itself.
+        "divide" if b <= a || b <= 0.0 => 1.0,
+        "divide" => a / b,
+        "darken" => a.min(b),
+        "lighten" => a.max(b),
+        _ => b,
+    }
+}
+
+/// Columns in: `width` of `a`, `width` of `b`, amount.
 #[derive(Debug)]
-struct Mix;
+pub(super) struct Mix {
+    /// What `b` does to `a`.
+    pub(super) mode: &'static str,
+    /// Columns of the values that are mixed.
+    pub(super) width: usize,
+}
 
 impl Kernel for Mix {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("mix").whole(i64::from(KIND.version));
+        key.text("mix")
+            .whole(i64::from(KIND.version))
+            .text(self.mode);
     }
 
     fn width(&self) -> usize {
-        3
+        self.width
     }
 
     fn sampling(&self) -> Sampling {
+        if !["normal", "add"].contains(&self.mode) {
+            return Sampling::Supersampled;
+        }
         Sampling::FilteredWhereStraight {
-            column: AMOUNT,
+            column: 2 * self.width,
             absolute: 0.08,
             relative: 0.0,
         }
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let amounts = block.inputs[AMOUNT].values;
+        let amounts = block.inputs[2 * self.width].values;
         for (part, output) in block.outputs.iter_mut().enumerate() {
             let colours = block.inputs[part]
                 .values
                 .iter()
-                .zip(block.inputs[3 + part].values);
+                .zip(block.inputs[self.width + part].values);
             for ((output, (a, b)), amount) in output.iter_mut().zip(colours).zip(amounts) {
                 let amount = amount.clamp(0.0, 1.0);
                 // Exact at both ends, which a + (b - a) * amount is not.
-                *output = a * (1.0 - amount) + b * amount;
+                *output = a * (1.0 - amount) + blended(self.mode, *a, *b) * amount;
             }
         }
     }

@@ -1,4 +1,5 @@
-//! Surfaces: what a material is made of, and how it is cut.
+//! Surfaces: what a material is made of, and how materials are blended.
 
+pub mod blend;
 pub mod material;
 pub mod mix;

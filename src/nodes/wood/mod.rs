@@ -7,3 +7,4 @@ pub mod pattern_lookup;
 pub mod sample_pattern;
 pub mod skeleton;
 pub mod skeleton_from_file;
+mod tree_file;

@@ -1,4 +1,4 @@
-//! `skeleton_from_file`: trunk and branches from a scanned log.
+//! `skeleton_from_file`: trunk and branches from a scanned log, or from a measured tree.
 //!
 //! `pith` is a JSON list of `[x, y, z]` in mm with rising z. `knots` is a JSON list of nine numbers
 //! `[A, B, C, D, E, F, G, H, I]` for each knot, in mm and radians, as published with Larsson et al. 2022,
@@ -19,9 +19,12 @@
 //!
 //! Left out are knots that have no positive thickness or length at their end, and knots that start below
 //! the first or above the last point of the pith: nothing is clamped to it.
+//!
+//! `tree` is a CSV file instead of both; see `tree_file`.
 
 use super::growth::log_file;
 use super::skeleton::{TANGENTS, tangents};
+use super::tree_file::{self, LengthUnit};
 use crate::geometry::spline::TrunkCurve;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Skeleton, Type, Value};
@@ -30,26 +33,41 @@ use std::sync::Arc;
 /// Trunk and branches from the pith and the knots of a measured log.
 pub static KIND: Kind = Kind {
     name: "skeleton_from_file",
-    version: 1,
-    about: "The skeleton of a measured log: its pith as trunk, its knots as branches.",
-    source: "Larsson et al. 2022 (the knots' formulas and data); Momoi & Takatera 2014, eqs. (4)-(8)",
+    version: 2,
+    about: "The skeleton of a measured log, its pith as trunk and its knots as branches, or of a measured tree. Parts \
+            of a trunk that do not rise and branches of branches are left out, with a warning.",
+    source: "Larsson et al. 2022 (the knots' formulas and data); Raumonen et al. 2013 (cylinders of TreeQSM); Momoi & \
+             Takatera 2014, eqs. (4)-(8)",
     inputs: &[
         Input::new(
             "pith",
             Type::File,
             "JSON list of [x, y, z] in mm, from the ground up.",
-        ),
+        )
+        .optional(),
         Input::new(
             "knots",
             Type::File,
             "JSON list of nine numbers A to I for each knot.",
         )
         .optional(),
+        Input::new(
+            "tree",
+            Type::File,
+            "Instead of a pith: CSV with the columns id, parent, x, y, z, radius, or with the cylinders of TreeQSM.",
+        )
+        .optional(),
+        Input::new(
+            "unit",
+            Type::Choice(LengthUnit::NAMES),
+            "Unit of the lengths in `tree`; without it, what the file says: `# unit: m`.",
+        )
+        .optional(),
         TANGENTS,
         Input::new(
             "every",
             Type::Whole,
-            "Take every n-th point of the pith, and the last.",
+            "Take every n-th point of the pith or trunk, and the last.",
         )
         .default("1")
         .range(1.0, 100_000.0),
@@ -68,9 +86,21 @@ pub static KIND: Kind = Kind {
 };
 
 fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let given = |name: &str| inputs.get(name).is_some();
+    if given("tree") {
+        return from_tree(inputs);
+    }
+    if given("unit") {
+        let failure = Failure::of_input("unit", "`unit` is for a `tree`, and piths are in mm");
+        return Err(failure.with_hint("leave it out"));
+    }
+    if !given("pith") {
+        let failure = Failure::new("neither `pith` nor `tree` is set");
+        return Err(failure.with_hint("name the file of a pith in JSON, or of a tree in CSV"));
+    }
     let pith = log_file::pith(&inputs.file("pith").bytes)
         .map_err(|reason| Failure::of_input("pith", reason))?;
-    let every = usize::try_from(inputs.whole("every")).unwrap_or(1).max(1);
+    let every = every(inputs);
     let last = pith.len().saturating_sub(1);
     let kept = |(index, node)| (index % every == 0 || index == last).then_some(node);
     let trunk: Vec<_> = pith.into_iter().enumerate().filter_map(kept).collect();
@@ -92,4 +122,30 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         tangents,
         branches,
     }))])
+}
+
+fn every(inputs: &Inputs<'_>) -> usize {
+    usize::try_from(inputs.whole("every")).unwrap_or(1).max(1)
+}
+
+fn from_tree(inputs: &Inputs<'_>) -> Result<Vec<Value>, Failure> {
+    for log in ["pith", "knots"] {
+        if inputs.get(log).is_some() {
+            let message = format!("`{log}` is set, but the skeleton comes from `tree`");
+            return Err(Failure::of_input(log, message).with_hint("remove one of them"));
+        }
+    }
+    let unit = inputs.get("unit").map(|_| inputs.choice("unit"));
+    let unit = unit.and_then(LengthUnit::from_name);
+    let bytes = &inputs.file("tree").bytes;
+    let (skeleton, warnings) = tree_file::skeleton(bytes, unit, tangents(inputs), every(inputs))
+        .map_err(|fault| Failure {
+            message: fault.message,
+            input: Some("tree"),
+            hint: fault.hint,
+        })?;
+    warnings
+        .into_iter()
+        .for_each(|warning| inputs.warn(warning));
+    Ok(vec![Value::Skeleton(Arc::new(skeleton))])
 }

@@ -2,14 +2,8 @@
 
 use crate::colour;
 use crate::node::Failure;
-use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits, Rgba};
-use std::io::Cursor;
-
-/// Longest side in pixels.
-const MAX_SIDE: u32 = 32_768;
-
-/// Memory that decoding may take, in MiB.
-const MAX_MEBIBYTES: u64 = 256;
+use crate::nodes::picture::{self, Format};
+use image::{DynamicImage, Rgba};
 
 /// A point in pixels: x to the right, y down, (0.5, 0.5) is the centre of the first pixel.
 pub(super) type Point = [f64; 2];
@@ -42,9 +36,13 @@ impl Photograph {
     /// # Errors
     /// Other formats, broken files, and pictures over the limits.
     pub(super) fn decode(bytes: &[u8]) -> Result<Photograph, Failure> {
-        // Decoders have been known to panic on hostile files.
-        let decoded = std::panic::catch_unwind(|| decode(bytes))
-            .unwrap_or_else(|_| Err(Failure::of_input("file", "the picture is broken")))?;
+        let format = Format::of(bytes).filter(|format| *format != Format::Exr);
+        let Some(format) = format else {
+            let message = "expected a PNG, JPEG or BMP picture, found another kind of file";
+            return Err(Failure::of_input("file", message));
+        };
+        picture::head(bytes, format)?;
+        let decoded = picture::decode(bytes, format)?;
         let codes: u32 = if sixteen_bits(&decoded) { 65_535 } else { 255 };
         let linear = |code| colour::from_srgb(f64::from(code) / f64::from(codes)) as f32;
         let pixels = match decoded {
@@ -115,33 +113,6 @@ impl Sum {
 fn sixteen_bits(picture: &DynamicImage) -> bool {
     let color = picture.color();
     color.bytes_per_pixel() > color.channel_count()
-}
-
-fn decode(bytes: &[u8]) -> Result<DynamicImage, Failure> {
-    let of_file = |message: String| Failure::of_input("file", message);
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|error| of_file(format!("the picture cannot be read: {error}")))?;
-    let known = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp];
-    if !reader
-        .format()
-        .is_some_and(|format| known.contains(&format))
-    {
-        let message = "expected a PNG, JPEG or BMP picture, found another kind of file";
-        return Err(of_file(message.to_owned()));
-    }
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    limits.max_alloc = Some(MAX_MEBIBYTES << 20);
-    reader.limits(limits);
-    reader.decode().map_err(|error| match error {
-        ImageError::Limits(_) => {
-            let sides = format!("{MAX_SIDE} pixels a side or {MAX_MEBIBYTES} MiB");
-            of_file(format!("the picture is larger than {sides}")).with_hint("scale it down")
-        }
-        error => of_file(format!("the picture cannot be decoded: {error}")),
-    })
 }
 
 /// A convex polygon: four corners, and one more for each of four cuts.

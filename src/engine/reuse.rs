@@ -1,0 +1,100 @@
+//! What need not be made again: structures from memory or the store, decoded files from memory.
+
+use super::build::Builder;
+use super::content;
+use super::event::{Event, From};
+use super::memory::Structure;
+use crate::graph::{Node, Source};
+use crate::key::{Key, KeyHasher};
+use crate::node::Failure;
+use std::time::Instant;
+
+impl Builder<'_> {
+    /// Fields over a decoded file from memory, or made. They are too large for the store.
+    pub(super) fn decoded(
+        &self,
+        node: &Node,
+        content_key: Key,
+        make: impl FnOnce() -> Result<Structure, Failure>,
+    ) -> Result<Structure, Failure> {
+        let mut key = KeyHasher::new("decoded", 1);
+        // The fields report what they did under the node's name.
+        let key = key.key(content_key).text(&node.name).finish();
+        if let Some(structure) = self.memory.structure(&key)
+            && self.budget.take(structure.taken)
+        {
+            self.listener.hear(Event::StructureReused {
+                node: node.name.to_string(),
+                from: From::Memory,
+            });
+            return Ok(structure);
+        }
+        let start = Instant::now();
+        let structure = make()?;
+        let bytes = usize::try_from(structure.taken).unwrap_or(usize::MAX);
+        self.memory
+            .put_structure(key, structure.clone(), bytes, nanoseconds(start));
+        self.listener.hear(Event::StructureBuilt {
+            node: node.name.to_string(),
+            milliseconds: nanoseconds(start) * 1e-6,
+        });
+        Ok(structure)
+    }
+
+    /// A structure from memory, from the store, or made.
+    pub(super) fn structure(
+        &self,
+        node: &Node,
+        key: Key,
+        make: impl FnOnce() -> Result<Structure, Failure>,
+    ) -> Result<Structure, Failure> {
+        let name = node.name.to_string();
+        if let Some(structure) = self.memory.structure(&key) {
+            self.listener.hear(Event::StructureReused {
+                node: name,
+                from: From::Memory,
+            });
+            return Ok(structure);
+        }
+        let start = Instant::now();
+        let stored = self.store.and_then(|store| store.get("structure", &key));
+        if let Some(bytes) = stored
+            && let Some(structure) = content::decode(node.kind, &bytes)
+        {
+            self.memory
+                .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
+            self.listener.hear(Event::StructureReused {
+                node: name,
+                from: From::Disk,
+            });
+            return Ok(structure);
+        }
+        let structure = make()?;
+        let bytes = content::encode(&structure.values, &structure.warnings);
+        self.memory
+            .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
+        if let Some(Err(error)) = self.store.map(|store| store.put("structure", &key, &bytes)) {
+            self.listener.hear(Event::StoreFailed {
+                reason: error.to_string(),
+            });
+        }
+        let milliseconds = nanoseconds(start) * 1e-6;
+        self.listener.hear(Event::StructureBuilt {
+            node: name,
+            milliseconds,
+        });
+        Ok(structure)
+    }
+}
+
+/// Whether the node is made of a file.
+pub(super) fn reads_files(node: &Node) -> bool {
+    let sources = node.inputs.iter().map(|binding| &binding.source);
+    sources
+        .into_iter()
+        .any(|source| matches!(source, Source::File(_)))
+}
+
+fn nanoseconds(start: Instant) -> f64 {
+    start.elapsed().as_nanos() as f64
+}
