@@ -236,8 +236,8 @@ fn write_all(world: &dyn World, request: &MapRequest, rows: &[u8]) -> io::Result
 #[test]
 fn a_disk_that_fails_at_any_moment_gives_an_error_and_no_file() {
     for format in FORMATS {
-        let request = with_size([700, 60], MapKind::Colour, format);
-        let rows = noise(60 * request.row_bytes(), 0);
+        let request = with_size([700, 130], MapKind::Colour, format);
+        let rows = noise(130 * request.row_bytes(), 0);
         let mut failures = 0;
         loop {
             let files = Memory::default();

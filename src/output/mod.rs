@@ -4,10 +4,12 @@
 //! [`MapWriter`] takes whole rows of such bytes from top to bottom, compresses them and forgets them: it
 //! holds a block of rows, never the image. The file appears when it is finished, all at once.
 
+mod deflate;
 mod encode;
 mod exr;
 mod png;
 mod srgb;
+mod strips;
 
 pub use encode::{Encoder, Faults, MapKind};
 
@@ -44,8 +46,11 @@ pub struct MapRequest {
 impl MapRequest {
     /// The bytes of one row, as the [`Encoder`] makes them.
     pub fn row_bytes(&self) -> usize {
-        let encoder = Encoder::new(self.kind, self.format, None);
-        self.pixels[0] as usize * encoder.pixel_bytes()
+        self.pixels[0] as usize * self.pixel_bytes()
+    }
+
+    fn pixel_bytes(&self) -> usize {
+        Encoder::new(self.kind, self.format, None).pixel_bytes()
     }
 
     /// Pixels per mm in both directions; `None` where the size says nothing.
