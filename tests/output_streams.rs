@@ -35,7 +35,11 @@ fn written(request: &MapRequest, rows: &[u8], calls: &[usize]) -> Vec<u8> {
 
 #[test]
 fn grouping_rows_differently_does_not_change_the_file() {
-    for (kind, size) in [(MapKind::Colour, [17, 67]), (MapKind::Number, [333, 32])] {
+    for (kind, size) in [
+        (MapKind::Colour, [17, 67]),
+        (MapKind::Number, [333, 32]),
+        (MapKind::Normal, [1700, 70]),
+    ] {
         for format in FORMATS {
             let request = with_size(size, kind, format);
             let rows = encoded(&request);
@@ -60,18 +64,20 @@ fn grouping_rows_differently_does_not_change_the_file() {
 
 #[test]
 fn the_number_of_threads_does_not_change_the_file() {
-    let request = with_size([50, 300], MapKind::Colour, MapFormat::ExrHalf);
-    let rows = encoded(&request);
-    let with_threads = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| written(&request, &rows, &[5, 300]))
-    };
-    let one = with_threads(1);
-    for threads in [2, 3, 7] {
-        assert!(one == with_threads(threads), "{threads} threads");
+    for format in FORMATS {
+        let request = with_size([700, 300], MapKind::Colour, format);
+        let rows = encoded(&request);
+        let with_threads = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| written(&request, &rows, &[5, 300]))
+        };
+        let one = with_threads(1);
+        for threads in [2, 3, 7] {
+            assert!(one == with_threads(threads), "{format:?} {threads} threads");
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use yosegi::value::MapFormat;
 use yosegi::world::{Memory, World};
 
 pub(crate) const KINDS: [MapKind; 3] = [MapKind::Colour, MapKind::Number, MapKind::Normal];
-pub(crate) const SIZES: [[u32; 2]; 4] = [[1, 1], [1, 5], [17, 16], [333, 71]];
+pub(crate) const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 5], [17, 16], [333, 71], [1500, 120]];
 
 /// The nearest sample, straight from the definition.
 pub(crate) fn expected(kind: MapKind, max: f64, value: f32) -> u16 {

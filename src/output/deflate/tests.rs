@@ -1,5 +1,6 @@
 //! Pieces are read back by another decompressor; sizes and checksums are as promised.
 
+use super::tokens::{LONGEST_RUN, length_extra, length_symbol, parts};
 use super::*;
 
 /// The pieces as one stream, through the decompressor of `png`.
