@@ -1,119 +1,98 @@
 //! Encoding and writing maps against the one-call writers of the crates, in pairs, as ratios of one run.
 //!
-//! `cargo bench --bench output [SIDE]`: a picture of wood with grain, 4096 by 4096 pixels unless said
-//! otherwise. Ours starts from columns of floats, theirs from finished bytes or floats in memory; files
-//! go nowhere. Ratios are medians of pairs, times the least of the runs.
+//! `cargo bench --bench output [SIDE]`: wood with grain and the normals of a rough ground, 4096 by 4096
+//! pixels unless said otherwise. Ours starts from columns of floats, theirs from finished bytes or floats in
+//! memory; files go nowhere. Times are the least of the runs, ratios the medians of the pairs.
+
+mod output_support;
 
 use exr::prelude::{
     Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage, f16,
 };
+use output_support::pictures::{normals, wood};
+use output_support::{Nowhere, seconds};
+use rayon::prelude::*;
 use std::hint::black_box;
-use std::io::{self, Cursor, Seek, SeekFrom, Write};
+use std::io::Cursor;
 use std::path::Path;
-use std::time::Instant;
+use std::sync::atomic::Ordering;
 use yosegi::key::Key;
 use yosegi::output::{Encoder, MapKind, MapRequest, create};
 use yosegi::value::MapFormat;
-use yosegi::world::{PendingFile, World};
 
-const PAIRS: usize = 5;
+const PAIRS: usize = 7;
 /// Rows that are encoded and written together, as the engine does with a row of tiles.
-const BAND: usize = 64;
+const BAND: usize = 128;
+/// Rows that one thread encodes.
+const PART: usize = 16;
 
-/// A disk that forgets everything.
-struct Nowhere;
+/// A picture, and how it is to be written.
+struct Picture {
+    name: &'static str,
+    columns: [Vec<f32>; 3],
+    side: usize,
+    kind: MapKind,
+}
 
-impl World for Nowhere {
-    fn read(&self, _: &Path) -> io::Result<Vec<u8>> {
-        Err(io::ErrorKind::NotFound.into())
+impl Picture {
+    fn encode(&self, encoder: &Encoder, start: usize, bytes: &mut [u8]) {
+        let part_bytes = PART * self.side * encoder.pixel_bytes();
+        let parts = bytes.par_chunks_mut(part_bytes).enumerate();
+        parts.for_each(|(part, bytes)| {
+            let start = start + part * PART * self.side;
+            let length = bytes.len() / encoder.pixel_bytes();
+            let part = self
+                .columns
+                .each_ref()
+                .map(|column| &column[start..start + length]);
+            black_box(encoder.encode(&part, bytes));
+        });
     }
 
-    fn create(&self, _: &Path) -> io::Result<Box<dyn PendingFile>> {
-        Ok(Box::new(Nowhere))
+    fn bytes(&self, format: MapFormat) -> Vec<u8> {
+        let encoder = Encoder::new(self.kind, format, None);
+        let mut bytes = vec![0; self.side * self.side * encoder.pixel_bytes()];
+        self.encode(&encoder, 0, &mut bytes);
+        bytes
+    }
+
+    /// Encodes and writes a map of ours; gives its size.
+    fn write(&self, format: MapFormat) -> u64 {
+        let request = MapRequest {
+            pixels: [self.side as u32; 2],
+            size_mm: [1000.0; 2],
+            kind: self.kind,
+            format,
+            key: Key::of_bytes(b"bench"),
+            channel: self.name.to_owned(),
+        };
+        let encoder = Encoder::new(request.kind, format, None);
+        let nowhere = Nowhere::default();
+        let mut writer =
+            create(&nowhere, Path::new(self.name), &request).expect("nowhere has room");
+        let mut band = vec![0; BAND * request.row_bytes()];
+        for start in (0..self.side * self.side).step_by(BAND * self.side) {
+            let rows = BAND.min(self.side - start / self.side);
+            let bytes = &mut band[..rows * request.row_bytes()];
+            self.encode(&encoder, start, bytes);
+            writer.write_rows(bytes).expect("nowhere has room");
+        }
+        writer.finish().expect("nowhere has room");
+        nowhere.0.load(Ordering::Relaxed)
     }
 }
 
-impl Write for Nowhere {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        Ok(black_box(bytes).len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Seek for Nowhere {
-    fn seek(&mut self, _: SeekFrom) -> io::Result<u64> {
-        Ok(0)
-    }
-}
-
-impl PendingFile for Nowhere {
-    fn commit(self: Box<Self>) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// Red, green and blue of a plain-sawn board: rings across, fibres along, noise from point to point.
-fn wood(side: usize) -> [Vec<f32>; 3] {
-    let noise = |x: usize, y: usize| {
-        let mixed = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
-        let mixed = (mixed ^ mixed >> 15).wrapping_mul(0x2c1b_3c6d);
-        ((mixed ^ mixed >> 13) & 0xff) as f32 / 255.0 - 0.5
-    };
-    let pixel = |x: usize, y: usize| {
-        let [u, v] = [x as f32 / side as f32, y as f32 / side as f32];
-        let ring = ((u + 0.04 * v * (1.0 - v)) * 40.0).fract();
-        let light = 1.0 + 0.08 * noise(x, y / 64) + 0.03 * noise(x, y);
-        [(0.62, 0.35), (0.4, 0.27), (0.21, 0.15)]
-            .map(|(early, late)| (early - late * ring * ring * ring) * light)
-    };
-    let pixels = |sample: usize| {
-        let all = (0..side).flat_map(|y| (0..side).map(move |x| (x, y)));
-        all.map(|(x, y)| pixel(x, y)[sample]).collect()
-    };
-    [pixels(0), pixels(1), pixels(2)]
-}
-
-fn encode(encoder: &Encoder, columns: &[Vec<f32>; 3], start: usize, bytes: &mut [u8]) {
-    let length = bytes.len() / encoder.pixel_bytes();
-    let part = columns
-        .each_ref()
-        .map(|column| &column[start..start + length]);
-    black_box(encoder.encode(&part, bytes));
-}
-
-/// Encodes and writes a map of ours.
-fn ours(columns: &[Vec<f32>; 3], side: usize, format: MapFormat) {
-    let request = MapRequest {
-        pixels: [side as u32; 2],
-        size_mm: [1000.0; 2],
-        kind: MapKind::Colour,
-        format,
-        key: Key::of_bytes(b"bench"),
-        channel: "base_color".to_owned(),
-    };
-    let encoder = Encoder::new(request.kind, format, None);
-    let mut writer = create(&Nowhere, Path::new("wood"), &request).expect("nowhere has room");
-    let mut band = vec![0; BAND * request.row_bytes()];
-    for start in (0..side * side).step_by(BAND * side) {
-        let rows = BAND.min(side - start / side);
-        let bytes = &mut band[..rows * request.row_bytes()];
-        encode(&encoder, columns, start, bytes);
-        writer.write_rows(bytes).expect("nowhere has room");
-    }
-    writer.finish().expect("nowhere has room");
-}
-
-/// The png crate's own call with the same setting.
-fn their_png(bytes: &[u8], side: usize, depth: png::BitDepth) {
-    let mut encoder = png::Encoder::new(Nowhere, side as u32, side as u32);
+/// The png crate's own call at its fast setting; gives the size of the file.
+fn their_png(bytes: &[u8], side: usize, depth: png::BitDepth) -> u64 {
+    let nowhere = Nowhere::default();
+    let mut encoder = png::Encoder::new(nowhere.clone(), side as u32, side as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(depth);
     encoder.set_compression(png::Compression::Fast);
     let mut writer = encoder.write_header().expect("nowhere has room");
     writer.write_image_data(bytes).expect("nowhere has room");
+    writer.finish().expect("nowhere has room");
+    nowhere.0.load(Ordering::Relaxed)
 }
 
 /// The exr crate's own call on one thread with the same compression.
@@ -143,64 +122,109 @@ fn their_exr(columns: &[Vec<f32>; 3], side: usize, format: MapFormat) {
     black_box(file.into_inner());
 }
 
-fn seconds(work: impl FnOnce()) -> f64 {
-    let start = Instant::now();
-    work();
-    start.elapsed().as_secs_f64()
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }
 
-/// Runs both in turn and prints the least times and the median ratio.
+/// Runs both in turn and prints the least times and the median ratios, on the wall and of the processors.
 fn compare(name: &str, mut ours: impl FnMut(), mut theirs: impl FnMut()) {
-    let pairs: Vec<[f64; 2]> = (0..PAIRS)
+    let pairs: Vec<[[f64; 2]; 2]> = (0..PAIRS)
         .map(|_| [seconds(&mut ours), seconds(&mut theirs)])
         .collect();
-    let least = |which: usize| {
-        pairs
-            .iter()
-            .map(|pair| pair[which])
-            .fold(f64::INFINITY, f64::min)
+    let least = |which: usize, clock: usize| {
+        let times = pairs.iter().map(|pair| pair[which][clock]);
+        times.fold(f64::INFINITY, f64::min) * 1e3
     };
-    let mut ratios: Vec<f64> = pairs.iter().map(|[ours, theirs]| ours / theirs).collect();
-    ratios.sort_by(f64::total_cmp);
-    let (ours, theirs, ratio) = (least(0) * 1e3, least(1) * 1e3, ratios[PAIRS / 2]);
-    println!("{name:32} ours {ours:7.1} ms, theirs {theirs:7.1} ms, ratio {ratio:.2}");
+    let ratio = |clock: usize| {
+        let ratios = pairs.iter().map(|pair| pair[0][clock] / pair[1][clock]);
+        median(ratios.collect())
+    };
+    let [processor, wall] = [1, 0].map(|clock| {
+        let [ours, theirs] = [least(0, clock), least(1, clock)];
+        format!("{ours:7.1} to {theirs:7.1} ms = {:.2}", ratio(clock))
+    });
+    println!("{name:40} processor {processor}   wall {wall}");
+}
+
+fn pool(threads: usize) -> rayon::ThreadPool {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads can be started")
+}
+
+fn compare_png(picture: &Picture, format: MapFormat, depth: png::BitDepth) {
+    let [one, two] = [1, 2].map(pool);
+    let bytes = one.install(|| picture.bytes(format));
+    let encoder = Encoder::new(picture.kind, format, None);
+    let mut place = bytes.clone();
+    let [_, alone] = seconds(|| one.install(|| picture.encode(&encoder, 0, &mut place)));
+    let samples = (picture.side * picture.side * 3) as f64;
+    let name = format!("{} {}", picture.name, format.name());
+    let sizes = [
+        picture.write(format),
+        their_png(&bytes, picture.side, depth),
+    ];
+    let percent = sizes.map(|size| size as f64 / bytes.len() as f64 * 100.0);
+    println!(
+        "{name}: encoding alone {:.2} ns a sample; ours {:.1} %, theirs {:.1} % of the samples",
+        alone * 1e9 / samples,
+        percent[0],
+        percent[1]
+    );
+    let theirs = || {
+        their_png(&bytes, picture.side, depth);
+    };
+    let ours = |pool: &rayon::ThreadPool| {
+        pool.install(|| picture.write(format));
+    };
+    compare(
+        &format!("{name}, 1 thread to theirs"),
+        || ours(&one),
+        theirs,
+    );
+    compare(
+        &format!("{name}, 2 threads to theirs"),
+        || ours(&two),
+        theirs,
+    );
+    compare(
+        &format!("{name}, 2 threads to 1"),
+        || ours(&two),
+        || ours(&one),
+    );
 }
 
 fn main() {
     let side = std::env::args()
         .find_map(|argument| argument.parse().ok())
         .unwrap_or(4096);
-    let columns = wood(side);
-    let depths = [
-        (MapFormat::Png8, png::BitDepth::Eight),
-        (MapFormat::Png16, png::BitDepth::Sixteen),
-    ];
-    for (format, depth) in depths {
-        let encoder = Encoder::new(MapKind::Colour, format, None);
-        let mut bytes = vec![0; side * side * encoder.pixel_bytes()];
-        encode(&encoder, &columns, 0, &mut bytes);
-        let all = seconds(|| encode(&encoder, &columns, 0, &mut bytes));
-        let samples = (side * side * 3) as f64;
-        println!(
-            "{format:?}: encoding alone {:.2} ns a sample",
-            all * 1e9 / samples
-        );
-        compare(
-            &format!("{format:?} encoded and written"),
-            || ours(&columns, side, format),
-            || their_png(&bytes, side, depth),
-        );
-    }
+    let wood = Picture {
+        name: "wood",
+        columns: wood(side),
+        side,
+        kind: MapKind::Colour,
+    };
+    let normals = Picture {
+        name: "normals",
+        columns: normals(side),
+        side,
+        kind: MapKind::Normal,
+    };
+    compare_png(&wood, MapFormat::Png8, png::BitDepth::Eight);
+    compare_png(&wood, MapFormat::Png16, png::BitDepth::Sixteen);
+    compare_png(&normals, MapFormat::Png8, png::BitDepth::Eight);
+    compare_png(&normals, MapFormat::Png16, png::BitDepth::Sixteen);
     for (format, threads) in [MapFormat::ExrHalf, MapFormat::ExrFloat]
         .into_iter()
         .flat_map(|format| [(format, 1), (format, 2)])
     {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.expect("threads can be started");
+        let pool = pool(threads);
         compare(
-            &format!("{format:?} with {threads} of our threads"),
-            || pool.install(|| ours(&columns, side, format)),
-            || their_exr(&columns, side, format),
+            &format!("{} with {threads} of our threads", format.name()),
+            || {
+                pool.install(|| wood.write(format));
+            },
+            || their_exr(&wood.columns, side, format),
         );
     }
 }

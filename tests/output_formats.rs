@@ -5,15 +5,12 @@ mod output_support;
 
 use exr::prelude::{AttributeValue, FlatSamples, ReadChannels, ReadLayers, Text, read};
 use image::DynamicImage;
-use output_support::{Map, key, request, with_size};
+use output_support::{KINDS, Map, SIZES, expected, key, request, with_size};
 use std::io::Cursor;
 use yosegi::colour::to_srgb;
 use yosegi::output::{Encoder, Faults, MapKind, read_key};
 use yosegi::value::MapFormat;
 use yosegi::world::World;
-
-const KINDS: [MapKind; 3] = [MapKind::Colour, MapKind::Number, MapKind::Normal];
-const SIZES: [[u32; 2]; 4] = [[1, 1], [1, 5], [17, 16], [333, 71]];
 
 /// Samples of a PNG, pixel after pixel, as 16-bit numbers.
 fn png_samples(map: &Map) -> Vec<u16> {
@@ -43,17 +40,6 @@ fn exr_channels(map: &Map) -> Vec<(String, FlatSamples)> {
         .into_iter()
         .map(|channel| (channel.name.to_string(), channel.sample_data))
         .collect()
-}
-
-/// The nearest sample, straight from the definition.
-fn expected(kind: MapKind, max: f64, value: f32) -> u16 {
-    let value = f64::from(value);
-    let ratio = match kind {
-        MapKind::Colour => to_srgb(value.clamp(0.0, 1.0)),
-        MapKind::Number => value,
-        MapKind::Normal => 0.5 + 0.5 * value,
-    };
-    (ratio.clamp(0.0, 1.0) * max).round() as u16
 }
 
 #[test]
@@ -297,8 +283,23 @@ fn a_png_tells_its_size_its_key_and_its_colours() {
             .read_info()
             .unwrap();
         let info = reader.info();
-        assert_eq!(info.srgb.is_some(), colour);
-        assert_eq!(info.source_gamma, None);
+        assert_eq!(
+            info.srgb,
+            colour.then_some(png::SrgbRenderingIntent::Perceptual)
+        );
+        let gamma = info.gama_chunk.map(png::ScaledFloat::into_scaled);
+        assert_eq!(gamma, colour.then_some(45455));
+        let places = info.chrm_chunk.map(|chunk| {
+            [chunk.white, chunk.red, chunk.green, chunk.blue]
+                .map(|(x, y)| (x.into_scaled(), y.into_scaled()))
+        });
+        let rec_709 = [
+            (31270, 32900),
+            (64000, 33000),
+            (30000, 60000),
+            (15000, 6000),
+        ];
+        assert_eq!(places, colour.then_some(rec_709));
         // 33 by 20 pixels on 8.25 by 10 mm.
         let size = info.pixel_dims.unwrap();
         assert_eq!(
@@ -333,7 +334,8 @@ fn an_exr_tells_its_size_its_key_and_its_colours() {
             exr::meta::attribute::LineOrder::Increasing
         );
         let (shared, own) = (&header.shared_attributes, &header.own_attributes);
-        assert_eq!(shared.pixel_aspect, 1.0);
+        // Pixels are half as wide as they are high.
+        assert_eq!(shared.pixel_aspect, 0.5);
         assert_eq!(
             shared.chromaticities.map(|it| it.red.0),
             colour.then_some(0.64)
@@ -352,12 +354,8 @@ fn an_exr_tells_its_size_its_key_and_its_colours() {
 
 #[test]
 fn the_key_is_read_back_from_every_format_and_from_nothing_else() {
-    for format in [
-        MapFormat::Png8,
-        MapFormat::Png16,
-        MapFormat::ExrHalf,
-        MapFormat::ExrFloat,
-    ] {
+    let with_key = |format: &MapFormat| *format != MapFormat::Bmp;
+    for format in MapFormat::ALL.into_iter().filter(with_key) {
         let map = Map::gradient(&request(MapKind::Colour, format));
         assert_eq!(read_key(&map.world, &map.path), Some(key()));
         // The header is enough, and half of it is not.

@@ -11,7 +11,7 @@ use workshop::Workshop;
 use yosegi::engine::Options;
 use yosegi::key::Key;
 
-/// A bent trunk with three branches, in all four formats.
+/// A bent trunk with three branches, in all formats.
 const TRUNK: &str = r##"(
     nodes: {
         "tree": skeleton(
@@ -41,6 +41,11 @@ const TRUNK: &str = r##"(
         "b": maps(of: "piece", pixels: (97, 131), format: png16, channels: [base_color, normal]),
         "c": maps(of: "piece", pixels: (97, 131), format: exr_half, channels: [base_color, height, normal]),
         "d": maps(of: "piece", pixels: (97, 131), format: exr_float, channels: [base_color, height, normal, growth_time]),
+        "e": maps(of: "piece", pixels: (97, 131), format: tiff8, channels: [base_color]),
+        "f": maps(of: "piece", pixels: (97, 131), format: tiff16, channels: [normal]),
+        "g": maps(of: "piece", pixels: (97, 131), format: tiff_half, channels: [base_color]),
+        "h": maps(of: "piece", pixels: (97, 131), format: tiff_float, channels: [height]),
+        "i": maps(of: "piece", pixels: (97, 131), format: bmp, channels: [base_color, roughness]),
     },
 )"##;
 
@@ -87,7 +92,7 @@ fn rendered(recipe: &str, options: Options) -> Vec<(String, Key)> {
 
 #[test]
 fn every_map_is_there_and_shows_something() {
-    for (recipe, count) in [(TRUNK, 12), (LOG, 10)] {
+    for (recipe, count) in [(TRUNK, 18), (LOG, 10)] {
         let mut hashes: Vec<Key> = rendered(recipe, options())
             .into_iter()
             .map(|(_, key)| key)

@@ -37,7 +37,7 @@ use std::sync::Arc;
 use store::Store;
 
 /// Raised whenever pixels or files change for a reason outside a kind: filtering, arithmetic, encoding.
-const RESULTS: u32 = 2;
+const RESULTS: u32 = 3;
 
 /// Largest side of a tile: every thread holds some twenty columns of a tile at once.
 const LARGEST_TILE: u32 = 512;

@@ -219,7 +219,11 @@ impl Tally {
             .par_iter_mut()
             .enumerate()
             .try_for_each(|(index, sheet)| {
-                let mut rows = vec![];
+                let parts = window
+                    .iter()
+                    .flatten()
+                    .map(|painted| painted.rows[index].len());
+                let mut rows = Vec::with_capacity(parts.sum());
                 for band in &window {
                     append_rows(&mut rows, band, index, sheet.encoder.pixel_bytes());
                     band.iter()

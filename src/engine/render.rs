@@ -105,6 +105,9 @@ impl Engine {
         let pairs = || outputs.iter().zip(&known);
         let names = pairs().flat_map(|(output, known)| output.file_names(known.as_deref(), &built));
         files::refuse_shared(request.graph, names)?;
+        for output in outputs.iter().filter(|output| built.has(output.index)) {
+            output.check_size(output.maps(&built))?;
+        }
         let mut rendered = vec![];
         for (output, known) in outputs.iter().zip(known) {
             rendered.extend(match known {
@@ -233,9 +236,7 @@ impl Output<'_> {
     fn paint(&self, built: &Built) -> Result<Vec<RenderedMap>, RunError> {
         let start = Instant::now();
         let maps = self.maps(built);
-        let pixels = self.request.pixels.unwrap_or(maps.pixels);
-        self.check_size(pixels)?;
-        let target = FlatPiece::new(pixels, maps.size);
+        let target = FlatPiece::new(self.pixels(maps), maps.size);
         let wanted = self.wanted_maps(maps, &target);
         let missing: Vec<&WantedMap> = wanted.iter().filter(|map| !self.found(map)).collect();
         let faults = if missing.is_empty() {

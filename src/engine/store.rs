@@ -92,8 +92,8 @@ impl Store {
 
     /// Whether the file at `path` is the map `key` as the store remembers it.
     pub(super) fn matches(&self, record: &MapRecord, key: &Key, path: &Path) -> bool {
-        // The key inside is quicker to compare, but a paint program may have kept it.
-        output::read_key(&*self.world, path) == Some(*key)
+        // A key inside is quicker to compare, but a paint program may have kept it, and a BMP has none.
+        output::read_key(&*self.world, path).is_none_or(|found| found == *key)
             && self
                 .hash(path)
                 .is_ok_and(|found| found == (record.file, record.bytes))

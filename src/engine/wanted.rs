@@ -7,8 +7,8 @@ use crate::diagnostics::{Code, Diagnostic};
 use crate::field::{Field, Target};
 use crate::key::KeyHasher;
 use crate::nodes::output::normal_from_height;
-use crate::output::MapKind;
-use crate::value::{Maps, Value};
+use crate::output::{LARGEST_BMP, MapKind, bmp_bytes};
+use crate::value::{FileType, Maps, Value};
 use petgraph::graph::NodeIndex;
 use std::sync::Arc;
 
@@ -38,13 +38,15 @@ impl Output<'_> {
         names.into_iter().map(|name| (self.index, name)).collect()
     }
 
-    pub(super) fn check_size(&self, [width, height]: [u32; 2]) -> Result<(), RunError> {
+    /// Refuses maps that are larger than the run or their format allows.
+    pub(super) fn check_size(&self, maps: &Maps) -> Result<(), RunError> {
+        let [width, height] = self.pixels(maps);
         let (found, limit) = (
             u64::from(width) * u64::from(height),
             self.engine.options.largest_output,
         );
         if found <= limit {
-            return Ok(());
+            return self.check_bmp(maps, [width, height]);
         }
         let node = &self.request.graph.nodes[self.index];
         let message = format!("the maps would have {width} x {height} = {found} pixels");
@@ -57,6 +59,45 @@ impl Output<'_> {
                     "lower the resolution, or allow it with `--max-pixels {found}`"
                 )),
         ]))
+    }
+
+    fn check_bmp(&self, maps: &Maps, pixels: [u32; 2]) -> Result<(), RunError> {
+        if maps.format.file_type() != FileType::Bmp {
+            return Ok(());
+        }
+        let sizes = maps.channels.iter().map(|channel| {
+            let (_, kind) = self.field(maps, channel);
+            (bmp_bytes(pixels, kind), channel)
+        });
+        let Some((found, channel)) = sizes.max() else {
+            return Ok(());
+        };
+        if found <= LARGEST_BMP {
+            return Ok(());
+        }
+        let node = &self.request.graph.nodes[self.index];
+        let format = node.kind.input("format");
+        let span = format.map_or(&node.span, |(index, _)| &node.inputs[index].span);
+        let [width, height] = pixels;
+        let message = format!(
+            "a BMP of `{channel}` with {width} x {height} pixels would have {found} bytes; the largest has \
+             {LARGEST_BMP}"
+        );
+        Err(RunError::Limit(vec![
+            Diagnostic::error(Code::TooMuch, message)
+                .at(&self.request.graph.source, span.clone(), "this format")
+                .in_node(&*node.name)
+                .expected(
+                    format!("at most {LARGEST_BMP} bytes"),
+                    format!("{found} bytes"),
+                )
+                .hint("lower the resolution, or write PNG or TIFF"),
+        ]))
+    }
+
+    /// Width and height in pixels, as the run or the recipe states them.
+    pub(super) fn pixels(&self, maps: &Maps) -> [u32; 2] {
+        self.request.pixels.unwrap_or(maps.pixels)
     }
 
     pub(super) fn wanted_maps(&self, maps: &Maps, target: &FlatPiece) -> Vec<WantedMap> {

@@ -2,7 +2,7 @@
 
 use super::srgb::{Srgb8, Srgb16};
 use crate::colour::from_srgb;
-use crate::value::MapFormat;
+use crate::value::{MapFormat, SampleType};
 use half::f16;
 use half::slice::HalfFloatSliceExt;
 use std::ops::AddAssign;
@@ -10,11 +10,11 @@ use std::ops::AddAssign;
 /// What the samples of a map are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapKind {
-    /// Red, green and blue, linear Rec. 709; a PNG holds them sRGB-encoded.
+    /// Red, green and blue, linear Rec. 709; whole samples hold them sRGB-encoded.
     Colour,
     /// One number.
     Number,
-    /// Three parts of a vector, each from -1 to 1; a PNG holds 0.5 + 0.5 n.
+    /// Three parts of a vector, each from -1 to 1; whole samples hold 0.5 + 0.5 n.
     Normal,
 }
 
@@ -27,7 +27,7 @@ impl MapKind {
         }
     }
 
-    /// The values that a PNG writes as black and as white, unless a recipe says otherwise.
+    /// The values that whole samples write as black and as white, unless a recipe says otherwise.
     pub fn range(self) -> [f64; 2] {
         match self {
             MapKind::Colour | MapKind::Number => [0.0, 1.0],
@@ -39,8 +39,8 @@ impl MapKind {
 /// How many samples a format could not hold as they were.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
-    /// Not a number, or infinite. A PNG holds the first as black, the second as black or white; OpenEXR
-    /// holds them as they are, with one bit pattern for all that are not a number.
+    /// Not a number, or infinite. Whole samples hold the first as black, the second as black or white;
+    /// floats hold them as they are, with one bit pattern for all that are not a number.
     pub non_finite: u64,
     /// Finite, but more than half a step beyond black or white, or beyond the largest half float:
     /// written as the nearest that the format has.
@@ -58,6 +58,7 @@ impl AddAssign for Faults {
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder {
     samples: usize,
+    sample_bytes: usize,
     conversion: Conversion,
     /// Finite values outside these are counted as clamped.
     limits: [f32; 2],
@@ -130,12 +131,13 @@ const HALF_OVERFLOW: f32 = 65520.0;
 impl Encoder {
     /// The encoder of maps of `kind` in `format`.
     ///
-    /// `range` holds the values that a PNG writes as black and as white instead of those of
-    /// [`MapKind::range`]; the second may be less than the first. OpenEXR holds values as they are.
+    /// `range` holds the values that whole samples write as black and as white instead of those of
+    /// [`MapKind::range`]; the second may be less than the first. Floats hold values as they are.
     pub fn new(kind: MapKind, format: MapFormat, range: Option<[f64; 2]>) -> Encoder {
         let conversion = Conversion::new(kind, format, range.unwrap_or(kind.range()));
         Encoder {
             samples: kind.samples(),
+            sample_bytes: format.sample_type().bytes(),
             conversion,
             limits: conversion.limits(),
         }
@@ -143,11 +145,11 @@ impl Encoder {
 
     /// The bytes of one pixel.
     pub fn pixel_bytes(&self) -> usize {
-        self.samples * self.conversion.sample_bytes()
+        self.samples * self.sample_bytes
     }
 
     /// Writes the pixels of one run of a row: `columns` has one slice for each sample of a pixel, all
-    /// of one length. Samples of PNG are big-endian, those of OpenEXR in the order of the machine.
+    /// of one length. Whole samples are big-endian, floats in the order of the machine.
     ///
     /// # Panics
     /// If the number or the lengths of the columns or of `bytes` do not fit.
@@ -219,24 +221,16 @@ impl Encoder {
 impl Conversion {
     fn new(kind: MapKind, format: MapFormat, range: [f64; 2]) -> Conversion {
         let encoded = kind == MapKind::Colour;
-        match format {
-            MapFormat::Png8 if encoded && range == [0.0, 1.0] => Conversion::Srgb8,
-            MapFormat::Png16 if encoded && range == [0.0, 1.0] => Conversion::Srgb16,
-            MapFormat::Png8 if encoded => Conversion::ScaledSrgb8(Scale::new(range, 1.0)),
-            MapFormat::Png16 if encoded => Conversion::ScaledSrgb16(Scale::new(range, 1.0)),
-            MapFormat::Png8 => Conversion::Linear8(Scale::new(range, 255.0)),
-            MapFormat::Png16 => Conversion::Linear16(Scale::new(range, 65535.0)),
-            MapFormat::ExrHalf => Conversion::Half,
-            MapFormat::ExrFloat => Conversion::Float,
-        }
-    }
-
-    fn sample_bytes(self) -> usize {
-        match self {
-            Conversion::Linear8(_) | Conversion::Srgb8 | Conversion::ScaledSrgb8(_) => 1,
-            Conversion::Linear16(_) | Conversion::Srgb16 | Conversion::ScaledSrgb16(_) => 2,
-            Conversion::Half => 2,
-            Conversion::Float => 4,
+        let plain = range == [0.0, 1.0];
+        match format.sample_type() {
+            SampleType::Whole8 if encoded && plain => Conversion::Srgb8,
+            SampleType::Whole16 if encoded && plain => Conversion::Srgb16,
+            SampleType::Whole8 if encoded => Conversion::ScaledSrgb8(Scale::new(range, 1.0)),
+            SampleType::Whole16 if encoded => Conversion::ScaledSrgb16(Scale::new(range, 1.0)),
+            SampleType::Whole8 => Conversion::Linear8(Scale::new(range, 255.0)),
+            SampleType::Whole16 => Conversion::Linear16(Scale::new(range, 65535.0)),
+            SampleType::Half => Conversion::Half,
+            SampleType::Float => Conversion::Float,
         }
     }
 

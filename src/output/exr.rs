@@ -1,7 +1,8 @@
 //! OpenEXR maps, written as a stream of scan line blocks.
 
+use super::strips::{Division, Strip, Strips};
 use super::{CHANNEL_NAME, KEY_NAME, MapKind, MapRequest, MapWriter, SOFTWARE, invalid};
-use crate::value::MapFormat;
+use crate::value::{self, MapFormat};
 use crate::world::PendingFile;
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::compression::Compression;
@@ -13,15 +14,11 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData, magic_number};
 use std::io::{self, SeekFrom};
 
-/// Writes an OpenEXR file with one layer: it holds one block of rows, and the offsets of the blocks.
-///
-/// Blocks that arrive together are compressed by as many threads as the pool of the caller has, but not by
-/// the pool: its threads may take up tiles that wait for this very writer.
+/// Writes an OpenEXR file with one layer: it holds the blocks in work, and the offsets of all.
 pub(super) struct ExrWriter {
     file: Box<dyn PendingFile>,
     layout: Layout,
-    /// Rows that do not fill a block yet.
-    pending: Vec<u8>,
+    strips: Strips,
     /// Where each block starts that has been written.
     offsets: Vec<u64>,
     table_start: u64,
@@ -44,58 +41,41 @@ impl ExrWriter {
         let table = vec![0; blocks * size_of::<u64>()];
         file.write_all(&start)?;
         file.write_all(&table)?;
+        let Vec2(_, lines) = layout.header[0].max_block_pixel_size();
+        let height = request.pixels[1] as usize;
         Ok(ExrWriter {
             file,
             layout,
-            pending: Vec::new(),
+            strips: Strips::new(Division::of_rows(lines, request.row_bytes(), height)),
             offsets: Vec::with_capacity(blocks),
             table_start: start.len() as u64,
             position: (start.len() + table.len()) as u64,
         })
     }
-
-    /// Writes rows that end where a block ends.
-    fn write_blocks(&mut self, rows: &[u8]) -> io::Result<()> {
-        let threads = rayon::current_num_threads();
-        for wave in rows.chunks(threads * self.layout.block_bytes()) {
-            for chunk in self.layout.compress_all(self.offsets.len(), wave)? {
-                self.file.write_all(&chunk)?;
-                self.offsets.push(self.position);
-                self.position += chunk.len() as u64;
-            }
-        }
-        Ok(())
-    }
-
-    fn write_pending(&mut self) -> io::Result<()> {
-        let mut rows = std::mem::take(&mut self.pending);
-        self.write_blocks(&rows)?;
-        rows.clear();
-        self.pending = rows;
-        Ok(())
-    }
 }
 
 impl MapWriter for ExrWriter {
-    fn write_rows(&mut self, mut rows: &[u8]) -> io::Result<()> {
-        let block_bytes = self.layout.block_bytes();
-        if !self.pending.is_empty() {
-            let missing = rows.len().min(block_bytes - self.pending.len());
-            self.pending.extend_from_slice(&rows[..missing]);
-            rows = &rows[missing..];
-            if self.pending.len() < block_bytes {
-                return Ok(());
-            }
-            self.write_pending()?;
-        }
-        let (whole, rest) = rows.split_at(rows.len() - rows.len() % block_bytes);
-        self.write_blocks(whole)?;
-        self.pending.extend_from_slice(rest);
-        Ok(())
+    fn write_rows(&mut self, rows: &[u8]) -> io::Result<()> {
+        let ExrWriter {
+            file,
+            layout,
+            strips,
+            offsets,
+            position,
+            ..
+        } = self;
+        strips.push(
+            rows,
+            |strip| layout.compress(strip),
+            |chunk| {
+                offsets.push(*position);
+                *position += chunk.len() as u64;
+                file.write_all(&chunk)
+            },
+        )
     }
 
     fn finish(mut self: Box<Self>) -> io::Result<()> {
-        self.write_pending()?;
         let table: Vec<u8> = self
             .offsets
             .iter()
@@ -119,7 +99,7 @@ impl Layout {
         Layout {
             header: [describe(request)],
             samples: request.kind.samples(),
-            sample_bytes: sample_type(request.format).bytes_per_sample(),
+            sample_bytes: request.format.sample_type().bytes(),
         }
     }
 
@@ -133,43 +113,18 @@ impl Layout {
         Ok(bytes)
     }
 
-    /// The bytes of a block of rows before it is compressed; the last one may be shorter.
-    fn block_bytes(&self) -> usize {
-        self.header[0].max_block_byte_size()
-    }
-
-    /// The finished chunks of the blocks from `first` on, each made by a thread of its own.
-    fn compress_all(&self, first: usize, rows: &[u8]) -> io::Result<Vec<Vec<u8>>> {
-        if rows.len() <= self.block_bytes() {
-            return Ok(vec![self.compress(first, rows)?]);
-        }
-        std::thread::scope(|scope| {
-            let blocks = rows.chunks(self.block_bytes()).enumerate();
-            let start = |(index, rows)| {
-                let work = move || self.compress(first + index, rows);
-                std::thread::Builder::new().spawn_scoped(scope, work)
-            };
-            let threads = blocks.map(start).collect::<io::Result<Vec<_>>>()?;
-            let join = |thread: std::thread::ScopedJoinHandle<'_, io::Result<Vec<u8>>>| {
-                thread
-                    .join()
-                    .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-            };
-            threads.into_iter().map(join).collect()
-        })
-    }
-
-    fn compress(&self, index: usize, rows: &[u8]) -> io::Result<Vec<u8>> {
+    /// The finished chunk of a block.
+    fn compress(&self, strip: Strip<'_>) -> io::Result<Vec<u8>> {
         let Vec2(width, lines) = self.header[0].max_block_pixel_size();
         let row_bytes = width * self.samples * self.sample_bytes;
         let block = UncompressedBlock {
             index: BlockIndex {
                 layer: 0,
-                pixel_position: Vec2(0, index * lines),
-                pixel_size: Vec2(width, rows.len() / row_bytes),
+                pixel_position: Vec2(0, strip.index * lines),
+                pixel_size: Vec2(width, strip.rows.len() / row_bytes),
                 level: Vec2(0, 0),
             },
-            data: self.planes(rows, row_bytes),
+            data: self.planes(strip.rows, row_bytes),
         };
         let chunk = block.compress_to_chunk(&self.header).map_err(from_exr)?;
         let mut bytes = Vec::new();
@@ -193,8 +148,8 @@ impl Layout {
 }
 
 fn sample_type(format: MapFormat) -> SampleType {
-    match format {
-        MapFormat::ExrHalf => SampleType::F16,
+    match format.sample_type() {
+        value::SampleType::Half => SampleType::F16,
         _ => SampleType::F32,
     }
 }
@@ -222,6 +177,7 @@ fn describe(request: &MapRequest) -> Header {
     own.other
         .insert(Text::from(CHANNEL_NAME), text(&request.channel));
     let shared = &mut header.shared_attributes;
+    shared.pixel_aspect = request.pixel_aspect() as f32;
     shared.chromaticities = (request.kind == MapKind::Colour).then_some(REC_709);
     shared
         .other

@@ -4,20 +4,25 @@
 //! [`MapWriter`] takes whole rows of such bytes from top to bottom, compresses them and forgets them: it
 //! holds a block of rows, never the image. The file appears when it is finished, all at once.
 
+mod bmp;
+mod deflate;
 mod encode;
 mod exr;
 mod png;
 mod srgb;
+mod strips;
+mod tiff;
 
+pub use bmp::{LARGEST_BMP, bmp_bytes};
 pub use encode::{Encoder, Faults, MapKind};
 
 use crate::key::Key;
-use crate::value::MapFormat;
+use crate::value::{FileType, MapFormat};
 use crate::world::World;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The name under which PNG text and EXR attributes carry the key of a map.
+/// The name under which PNG text, EXR attributes and the description of a TIFF carry the key of a map.
 const KEY_NAME: &str = "yosegi:key";
 /// The name under which they carry the name of the channel.
 const CHANNEL_NAME: &str = "yosegi:channel";
@@ -44,8 +49,11 @@ pub struct MapRequest {
 impl MapRequest {
     /// The bytes of one row, as the [`Encoder`] makes them.
     pub fn row_bytes(&self) -> usize {
-        let encoder = Encoder::new(self.kind, self.format, None);
-        self.pixels[0] as usize * encoder.pixel_bytes()
+        self.pixels[0] as usize * self.pixel_bytes()
+    }
+
+    fn pixel_bytes(&self) -> usize {
+        Encoder::new(self.kind, self.format, None).pixel_bytes()
     }
 
     /// Pixels per mm in both directions; `None` where the size says nothing.
@@ -57,12 +65,32 @@ impl MapRequest {
             .then_some(density)
     }
 
+    /// Width of a pixel over its height: 1 where both sides of the picture were rounded to whole pixels.
+    fn pixel_aspect(&self) -> f64 {
+        let Some([across, down]) = self.density() else {
+            return 1.0;
+        };
+        let aspect = down / across;
+        let shorter = f64::from(self.pixels[0].min(self.pixels[1]));
+        if (aspect - 1.0).abs() <= 1.0 / shorter {
+            1.0
+        } else {
+            aspect
+        }
+    }
+
     fn check(&self) -> io::Result<()> {
         // The widest row that fits into a block of OpenEXR, and the largest side of a PNG.
         let [width, height] = self.pixels;
         if width == 0 || height == 0 || width > 1 << 22 || height > i32::MAX as u32 {
             return Err(invalid(format!(
                 "expected a map of 1 to 4194304 by 1 to 2147483647 pixels, found {width} by {height}"
+            )));
+        }
+        let bytes = bmp_bytes(self.pixels, self.kind);
+        if self.format.file_type() == FileType::Bmp && bytes > LARGEST_BMP {
+            return Err(invalid(format!(
+                "expected a BMP of at most {LARGEST_BMP} bytes, found {bytes} bytes"
             )));
         }
         if self.channel.is_empty() || !self.channel.bytes().all(|byte| byte.is_ascii_graphic()) {
@@ -104,11 +132,11 @@ pub fn create(
     let start = || -> io::Result<Box<dyn MapWriter>> {
         request.check()?;
         let file = world.create(path)?;
-        Ok(match request.format {
-            MapFormat::Png8 | MapFormat::Png16 => Box::new(png::PngWriter::new(file, request)?),
-            MapFormat::ExrHalf | MapFormat::ExrFloat => {
-                Box::new(exr::ExrWriter::new(file, request)?)
-            }
+        Ok(match request.format.file_type() {
+            FileType::Png => Box::new(png::PngWriter::new(file, request)?),
+            FileType::Exr => Box::new(exr::ExrWriter::new(file, request)?),
+            FileType::Tiff => Box::new(tiff::TiffWriter::new(file, request)?),
+            FileType::Bmp => Box::new(bmp::BmpWriter::new(file, request)?),
         })
     };
     Ok(Box::new(Guarded {
@@ -120,13 +148,15 @@ pub fn create(
 }
 
 /// The key that a map was written with, read from the start of the file; `None` if there is no such
-/// file, or it is no PNG or OpenEXR, or it carries no key.
+/// file, or it is no PNG, TIFF or OpenEXR, or it carries no key. A BMP has no place for one.
 pub fn read_key(world: &dyn World, path: &Path) -> Option<Key> {
     // Headers of ours end within the first thousand bytes; other programs write longer ones.
     const START: usize = 1 << 16;
     let start = world.read_start(path, START).ok()?;
     let digits = if start.starts_with(b"\x89PNG") {
         png::read_text(&start, KEY_NAME)
+    } else if start.starts_with(b"II") {
+        tiff::read_text(&start, KEY_NAME)
     } else {
         exr::read_text(&start, KEY_NAME)
     };

@@ -40,22 +40,91 @@ pub enum MapFormat {
     ExrHalf,
     /// OpenEXR with 32-bit floats.
     ExrFloat,
+    /// TIFF with 8 bits a sample.
+    Tiff8,
+    /// TIFF with 16 bits a sample.
+    Tiff16,
+    /// TIFF with 16-bit floats.
+    TiffHalf,
+    /// TIFF with 32-bit floats.
+    TiffFloat,
+    /// BMP with 8 bits a sample.
+    Bmp,
+}
+
+/// The kind of file that a map is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileType {
+    /// Portable Network Graphics.
+    Png,
+    /// OpenEXR.
+    Exr,
+    /// Tagged Image File Format.
+    Tiff,
+    /// Windows bitmap.
+    Bmp,
+}
+
+/// What one sample of a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SampleType {
+    /// A whole number from 0 to 255.
+    Whole8,
+    /// A whole number from 0 to 65535.
+    Whole16,
+    /// A 16-bit float.
+    Half,
+    /// A 32-bit float.
+    Float,
+}
+
+impl SampleType {
+    /// The bytes of a sample.
+    pub fn bytes(self) -> usize {
+        match self {
+            SampleType::Whole8 => 1,
+            SampleType::Whole16 | SampleType::Half => 2,
+            SampleType::Float => 4,
+        }
+    }
+
+    /// Whether samples are floats, which hold values as they are.
+    pub fn is_float(self) -> bool {
+        matches!(self, SampleType::Half | SampleType::Float)
+    }
 }
 
 impl MapFormat {
+    /// All formats in the order of the variants.
+    pub const ALL: [MapFormat; 9] = [
+        MapFormat::Png8,
+        MapFormat::Png16,
+        MapFormat::ExrHalf,
+        MapFormat::ExrFloat,
+        MapFormat::Tiff8,
+        MapFormat::Tiff16,
+        MapFormat::TiffHalf,
+        MapFormat::TiffFloat,
+        MapFormat::Bmp,
+    ];
+
     /// The names a recipe uses, in the order of the variants.
-    pub const NAMES: [&'static str; 4] = ["png8", "png16", "exr_half", "exr_float"];
+    pub const NAMES: [&'static str; 9] = [
+        "png8",
+        "png16",
+        "exr_half",
+        "exr_float",
+        "tiff8",
+        "tiff16",
+        "tiff_half",
+        "tiff_float",
+        "bmp",
+    ];
 
     /// The format called `name`.
     pub fn from_name(name: &str) -> Option<MapFormat> {
-        let formats = [
-            MapFormat::Png8,
-            MapFormat::Png16,
-            MapFormat::ExrHalf,
-            MapFormat::ExrFloat,
-        ];
         let index = MapFormat::NAMES.iter().position(|known| *known == name)?;
-        formats.get(index).copied()
+        MapFormat::ALL.get(index).copied()
     }
 
     /// The name a recipe uses.
@@ -63,11 +132,33 @@ impl MapFormat {
         MapFormat::NAMES[self as usize]
     }
 
+    /// The kind of file.
+    pub fn file_type(self) -> FileType {
+        match self {
+            MapFormat::Png8 | MapFormat::Png16 => FileType::Png,
+            MapFormat::ExrHalf | MapFormat::ExrFloat => FileType::Exr,
+            MapFormat::Bmp => FileType::Bmp,
+            _ => FileType::Tiff,
+        }
+    }
+
+    /// What the samples are.
+    pub fn sample_type(self) -> SampleType {
+        match self {
+            MapFormat::Png8 | MapFormat::Tiff8 | MapFormat::Bmp => SampleType::Whole8,
+            MapFormat::Png16 | MapFormat::Tiff16 => SampleType::Whole16,
+            MapFormat::ExrHalf | MapFormat::TiffHalf => SampleType::Half,
+            MapFormat::ExrFloat | MapFormat::TiffFloat => SampleType::Float,
+        }
+    }
+
     /// The file name's extension.
     pub fn extension(self) -> &'static str {
-        match self {
-            MapFormat::Png8 | MapFormat::Png16 => "png",
-            MapFormat::ExrHalf | MapFormat::ExrFloat => "exr",
+        match self.file_type() {
+            FileType::Png => "png",
+            FileType::Exr => "exr",
+            FileType::Tiff => "tif",
+            FileType::Bmp => "bmp",
         }
     }
 }
@@ -85,6 +176,6 @@ pub struct Maps {
     pub channels: Vec<String>,
     /// How samples are written.
     pub format: MapFormat,
-    /// Values that a PNG writes as black and as white, for channels that are not ratios.
+    /// Values that whole samples write as black and as white, for channels that are not ratios.
     pub ranges: BTreeMap<String, [f64; 2]>,
 }

@@ -6,7 +6,7 @@ mod skeleton;
 mod types;
 
 pub use colour_pattern::{AfterEnd, ColourPattern};
-pub use material::{MapFormat, Maps, Material};
+pub use material::{FileType, MapFormat, Maps, Material, SampleType};
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
 pub use types::{Domain, Type, Unit};
 

@@ -130,6 +130,33 @@ fn more_pixels_than_allowed_are_refused_before_anything_is_painted() {
 }
 
 #[test]
+fn a_bmp_that_is_too_large_is_refused_before_any_output_is_painted() {
+    let mut workshop = without_store();
+    let recipe = edit(
+        PAIR,
+        "maps(of: \"right\", pixels: (48, 40))",
+        "maps(of: \"right\", pixels: (48, 40), format: bmp)",
+    );
+    // The size that the run asks for counts, not the one of the recipe.
+    workshop.size = Some([30_000, 30_000]);
+    let run = workshop.render(&recipe, &[], Cancel::new(), &|_| {});
+    let Err(RunError::Limit(wrong)) = &run.result else {
+        panic!("{:?}", run.result);
+    };
+    assert_snapshot!(yosegi::diagnostics::render_all(wrong), @r#"
+    error[too-much]: a BMP of `base_color` with 30000 x 30000 pixels would have 2700000054 bytes; the largest has 2147483647
+      --> recipes/recipe.ron:16:61
+       |
+    16 |         "deep": maps(of: "right", pixels: (48, 40), format: bmp),
+       |                                                             ^^^ this format
+       |
+       = help: lower the resolution, or write PNG or TIFF
+    "#);
+    assert!(!run.log().contains("tiles"), "{}", run.log());
+    assert_eq!(workshop.maps(), [""; 0]);
+}
+
+#[test]
 fn two_outputs_that_would_write_one_file_are_refused() {
     let recipe = r##"(
         nodes: {

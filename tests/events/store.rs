@@ -147,3 +147,42 @@ fn only_the_map_that_is_lost_is_painted_and_each_is_told_once() {
     assert_eq!(workshop.map("board_normal.png"), right);
     assert!(!log.contains("knots"), "{log}");
 }
+
+/// A BMP has no place for its key: the store alone knows it.
+#[test]
+fn a_bmp_is_known_by_the_store_and_a_changed_one_is_noticed() {
+    let workshop = with_store();
+    let recipe = edit(BOARD, "channels:", "format: bmp, channels:");
+    workshop.run(&recipe);
+    let path = workshop.folder.join("out/board_base_color.bmp");
+    let right = workshop.map("board_base_color.bmp");
+    assert_eq!(workshop.run(&recipe), "up to date board_base_color.bmp");
+    let second = workshop.another(stored());
+    assert_eq!(second.run(&recipe), "up to date board_base_color.bmp");
+    let mut painted_over = right.clone();
+    *painted_over.last_mut().unwrap() ^= 1;
+    workshop.files.insert(&path, painted_over);
+    assert_eq!(workshop.run(&recipe), "restored board_base_color.bmp");
+    assert_eq!(workshop.map("board_base_color.bmp"), right);
+    // The BMP of another board in its place is no map of this one.
+    let other = edit(&recipe, "thickening: 3,", "thickening: 4,");
+    workshop.run(&other);
+    assert!(workshop.map("board_base_color.bmp") != right);
+    assert_eq!(workshop.run(&recipe), "restored board_base_color.bmp");
+    assert_eq!(workshop.map("board_base_color.bmp"), right);
+}
+
+#[test]
+fn maps_of_every_format_are_up_to_date_the_second_time() {
+    let workshop = with_store();
+    for format in yosegi::value::MapFormat::ALL {
+        let recipe = edit(
+            BOARD,
+            "channels:",
+            &format!("format: {}, channels:", format.name()),
+        );
+        let name = format!("board_base_color.{}", format.extension());
+        assert!(workshop.run(&recipe).ends_with(&format!("written {name}")));
+        assert_eq!(workshop.run(&recipe), format!("up to date {name}"));
+    }
+}

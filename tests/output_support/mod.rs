@@ -4,10 +4,25 @@
 pub(crate) mod worlds;
 
 use std::path::PathBuf;
+use yosegi::colour::to_srgb;
 use yosegi::key::Key;
 use yosegi::output::{Encoder, MapKind, MapRequest, create};
 use yosegi::value::MapFormat;
 use yosegi::world::{Memory, World};
+
+pub(crate) const KINDS: [MapKind; 3] = [MapKind::Colour, MapKind::Number, MapKind::Normal];
+pub(crate) const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 5], [17, 16], [333, 71], [1500, 120]];
+
+/// The nearest sample, straight from the definition.
+pub(crate) fn expected(kind: MapKind, max: f64, value: f32) -> u16 {
+    let value = f64::from(value);
+    let ratio = match kind {
+        MapKind::Colour => to_srgb(value.clamp(0.0, 1.0)),
+        MapKind::Number => value,
+        MapKind::Normal => 0.5 + 0.5 * value,
+    };
+    (ratio.clamp(0.0, 1.0) * max).round() as u16
+}
 
 pub(crate) fn key() -> Key {
     Key::of_bytes(b"a board of spruce")

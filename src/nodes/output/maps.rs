@@ -1,14 +1,14 @@
 //! `maps`: writes channels of a flat piece as image files, one file a channel.
 //!
 //! A file is called after the output and the channel: `board_base_color.png`. The picture's upper left
-//! corner is the piece's; v points up. PNG holds sRGB for colours and plain values for the rest: ratios
-//! as they are, normals as (n + 1) / 2, lengths and extras scaled from their range. EXR holds everything
-//! as it is, colours linear.
+//! corner is the piece's; v points up. Whole samples (PNG, `tiff8`, `tiff16`, BMP) hold sRGB for colours and
+//! plain values for the rest: ratios as they are, normals as (n + 1) / 2, lengths and extras scaled from their
+//! range. Floats (EXR, `tiff_half`, `tiff_float`) hold everything as it is, colours linear.
 
 use crate::diagnostics::nearest;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::surface::material::STANDARD_CHANNELS;
-use crate::value::{Domain, MapFormat, Maps, Material, Type, Unit, Value};
+use crate::value::{Domain, FileType, MapFormat, Maps, Material, Type, Unit, Value};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -46,13 +46,14 @@ pub static KIND: Kind = Kind {
         Input::new(
             "format",
             Type::Choice(&MapFormat::NAMES),
-            "File format and sample type.",
+            "File format and samples: 8 or 16 bits whole (colours sRGB), half or float (as it is, colours \
+             linear). A BMP has at most 2147483647 bytes and carries no key: the store knows it.",
         )
         .default("png8"),
         Input::new(
             "ranges",
             Type::List(&Type::Record(RANGE)),
-            "What a PNG writes as black and as white.",
+            "What whole samples write as black and as white.",
         )
         .default("[]"),
     ],
@@ -172,9 +173,15 @@ fn check_channel(
         .channels
         .get(channel)
         .is_some_and(|field| field.width() == 1);
-    if format.extension() == "png" && is_number && !is_ratio && !ranges.contains_key(channel) {
+    let is_whole = !format.sample_type().is_float();
+    if is_whole && is_number && !is_ratio && !ranges.contains_key(channel) {
+        let file = match format.file_type() {
+            FileType::Tiff => "a TIFF of whole samples",
+            FileType::Bmp => "a BMP",
+            _ => "a PNG",
+        };
         let message =
-            format!("a PNG of `{channel}` needs to know which values are black and white");
+            format!("{file} of `{channel}` needs to know which values are black and white");
         return Err(Failure::of_input("channels", message).with_hint(format!(
             "add `ranges: [(channel: \"{channel}\", low: 0, high: 1)]` with its values, or write EXR"
         )));
