@@ -145,6 +145,7 @@ fn short(event: &Event) -> Option<String> {
         Event::MapWritten { path, .. } => format!("written {}", name(path)),
         Event::MapUpToDate { path, .. } => format!("up to date {}", name(path)),
         Event::MapRestored { path, .. } => format!("restored {}", name(path)),
+        Event::MapStale { path, .. } => format!("stale {}", name(path)),
         Event::StoreFailed { reason } => format!("store failed: {reason}"),
         Event::Cancelled => "cancelled".to_owned(),
         Event::Progress { .. } | Event::OutputDone { .. } => return None,

@@ -1,0 +1,121 @@
+//! What the store knows of an output: which maps it leads to, and whether they can be put in place.
+
+use super::event::Event;
+use super::render::{Output, WantedMap};
+use super::store::{MapRecord, Store};
+use super::{Engine, RESULTS, files};
+use crate::key::{Key, KeyHasher};
+use std::path::{Path, PathBuf};
+
+/// A map that need not be painted.
+pub(super) struct KnownMap {
+    pub(super) map: WantedMap,
+    pub(super) path: PathBuf,
+    record: MapRecord,
+    /// Whether the file is as it should be; otherwise the store has a copy.
+    pub(super) is_there: bool,
+}
+
+impl Engine {
+    /// What the store knows of a map whose file is `path`; changes nothing.
+    pub(super) fn known_map(&self, map: &WantedMap, path: PathBuf) -> Option<KnownMap> {
+        let store = self.store.as_ref()?;
+        let record = store.map(&map.key)?;
+        let is_there = store.matches(&record, &map.key, &path);
+        (is_there || store.holds(&record)).then(|| KnownMap {
+            map: map.clone(),
+            path,
+            record,
+            is_there,
+        })
+    }
+
+    /// The maps that a plan has led to.
+    pub(super) fn planned_maps(&self, plan: &Key) -> Option<Vec<WantedMap>> {
+        let bytes = self.store.as_ref()?.get("plan", plan)?;
+        postcard::from_bytes(&bytes).ok()
+    }
+
+    /// What the output `name` is before anything has run: `node` is the plan key of its node.
+    pub(super) fn output_key(&self, name: &str, node: Key, pixels: Option<[u32; 2]>) -> Key {
+        let mut key = KeyHasher::new("output", RESULTS);
+        key.key(node).text(name);
+        key.whole(i64::from(self.options.filtering));
+        pixels.iter().flatten().for_each(|side| {
+            key.whole(i64::from(*side));
+        });
+        key.finish()
+    }
+}
+
+impl Output<'_> {
+    pub(super) fn plan_key(&self) -> Key {
+        let node = self.plan.keys[&self.index];
+        self.engine
+            .output_key(self.name(), node, self.request.pixels)
+    }
+
+    /// The maps, if the store knows them all and they are in place or can be put there; changes nothing.
+    pub(super) fn known_maps(&self) -> Option<Vec<KnownMap>> {
+        let maps = self.engine.planned_maps(&self.plan_key())?;
+        maps.iter().map(|map| self.known_map(map)).collect()
+    }
+
+    pub(super) fn known_map(&self, map: &WantedMap) -> Option<KnownMap> {
+        self.engine.known_map(map, self.path(map))
+    }
+
+    /// Copies the map from the store if it is not there, and says so; false if that is not possible.
+    pub(super) fn put_in_place(&self, known: &KnownMap) -> bool {
+        let store = self.engine.store.as_ref();
+        let restore = |store: &Store| store.restore(&known.record, &known.path);
+        let is_in_place = known.is_there || store.is_some_and(restore);
+        if is_in_place {
+            self.request.listener.hear(self.event(known));
+        }
+        is_in_place
+    }
+
+    fn event(&self, known: &KnownMap) -> Event {
+        let (output, channel) = (self.name().to_owned(), known.map.channel.clone());
+        let (path, [not_finite, clamped]) = (known.path.clone(), known.record.faults);
+        if known.is_there {
+            Event::MapUpToDate {
+                output,
+                channel,
+                path,
+                not_finite,
+                clamped,
+            }
+        } else {
+            Event::MapRestored {
+                output,
+                channel,
+                path,
+                not_finite,
+                clamped,
+            }
+        }
+    }
+
+    /// Names the files that the output has left behind: they are not among the `written`.
+    pub(super) fn tell_stale(&self, written: &[&str]) {
+        let world = &*self.engine.world;
+        for (channel, path) in files::stale(world, &self.request.folder, self.name(), written) {
+            self.request.listener.hear(Event::MapStale {
+                output: self.name().to_owned(),
+                channel,
+                path,
+            });
+        }
+    }
+
+    pub(super) fn path(&self, map: &WantedMap) -> PathBuf {
+        map_path(&self.request.folder, map)
+    }
+}
+
+/// The file of a map in a folder.
+pub(super) fn map_path(folder: &Path, map: &WantedMap) -> PathBuf {
+    folder.join(&map.file_name)
+}
