@@ -228,8 +228,8 @@ fn kinds_are_described_completely() {
     assert_eq!(kinds.len(), yosegi::nodes::KINDS.len());
     for (kind, found) in yosegi::nodes::KINDS.iter().zip(kinds) {
         assert_eq!(
-            lines(&place.call(&["nodes", kind.name, "--json"])),
-            [found.clone()]
+            &lines(&place.call(&["nodes", kind.name, "--json"]))[0],
+            found
         );
         assert_eq!(
             (&found["name"], &found["version"]),

@@ -39,7 +39,7 @@ fn what_need_not_be_painted_is_no_progress() {
     workshop.run(PAIR);
     let recipe = edit(PAIR, "#805030", "#905030");
     let run = workshop.render(&recipe, &[], Cancel::new(), &|_| {});
-    let progress = run.events.iter().filter_map(|event| match event {
+    let mut progress = run.events.iter().filter_map(|event| match event {
         Event::Progress {
             maps_done,
             maps_total,
@@ -48,5 +48,5 @@ fn what_need_not_be_painted_is_no_progress() {
         } => Some((*maps_done, *maps_total, *fraction)),
         _ => None,
     });
-    assert_eq!(progress.last(), Some((1, 2, 1.0)));
+    assert_eq!(progress.next_back(), Some((1, 2, 1.0)));
 }

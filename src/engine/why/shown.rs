@@ -103,3 +103,31 @@ fn sign(operator: Operator) -> &'static str {
         Operator::Divide => "/",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colour::from_srgb;
+
+    #[test]
+    fn a_colour_is_written_as_it_was() {
+        let colour = |bytes: [u8; 3]| bytes.map(|byte| from_srgb(f64::from(byte) / 255.0));
+        for bytes in [[0, 0, 0], [255, 255, 255], [232, 199, 155], [1, 2, 3]] {
+            let [r, g, b] = bytes;
+            let expected = format!("\"#{r:02x}{g:02x}{b:02x}\"");
+            assert_eq!(value(&Value::Colour(colour(bytes))), expected);
+        }
+        assert_eq!(value(&Value::Colour([0.1, 0.25, 2.0])), "(0.1, 0.25, 2)");
+    }
+
+    #[test]
+    fn lists_and_records_are_written_as_in_a_recipe() {
+        let stop = Value::Record(vec![
+            ("at", Value::Number(0.5)),
+            ("on", Value::Toggle(true)),
+        ]);
+        assert_eq!(value(&Value::List(vec![stop])), "[(at: 0.5, on: true)]");
+        assert_eq!(value(&Value::Text("a \"b\"".to_owned())), r#""a \"b\"""#);
+        assert_eq!(value(&Value::Pair([1.0, -2.5])), "(1, -2.5)");
+    }
+}
