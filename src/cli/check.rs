@@ -1,6 +1,10 @@
 //! `yosegi check`: what is wrong with recipes.
 
+use super::listen::Listen;
+use super::options::{self, SizeArguments, StoreArguments};
 use super::{Exit, RecipeArguments, Recipes, report};
+use std::path::Path;
+use yosegi::engine::{Cancel, Engine, Options, Render};
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
@@ -8,24 +12,54 @@ pub(super) struct Arguments {
     recipes: Recipes,
     #[command(flatten)]
     recipe: RecipeArguments,
+    #[command(flatten)]
+    size: SizeArguments,
+    #[command(flatten)]
+    store: StoreArguments,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Exit {
-    let settings = arguments.recipe.settings();
-    let mut worst = Exit::Done;
-    for path in &arguments.recipes.recipes {
-        match report::load_recipe(path, &settings, arguments.recipe.json) {
-            Ok(graph) if !arguments.recipe.json => report::line(&format!(
-                "{}: {}, {}, nothing wrong",
-                path.display(),
-                count(graph.by_name.len(), "node"),
-                count(graph.outputs.len(), "output")
-            )),
-            Ok(_) => {}
-            Err(exit) => worst = worst.max(exit),
-        }
+    let options = Options {
+        memory: 0,
+        store: arguments.store.folder(),
+        largest_output: arguments.size.max_pixels,
+        ..Options::default()
+    };
+    let engine = match options::start(options) {
+        Ok(engine) => engine,
+        Err(exit) => return exit,
+    };
+    let recipes = arguments.recipes.recipes.iter();
+    let exits = recipes.map(|path| check(arguments, &engine, path));
+    exits.max().unwrap_or(Exit::Done)
+}
+
+fn check(arguments: &Arguments, engine: &Engine, path: &Path) -> Exit {
+    let json = arguments.recipe.json;
+    let graph = match report::load_recipe(path, &arguments.recipe.settings(), json) {
+        Ok(graph) => graph,
+        Err(exit) => return exit,
+    };
+    let request = Render {
+        graph: &graph,
+        folder: Default::default(),
+        only: vec![],
+        pixels: arguments.size.size,
+        listener: &Listen::new(json),
+        cancel: Cancel::new(),
+    };
+    if let Err(error) = engine.check(&request) {
+        return report::run_error(&error, json);
     }
-    worst
+    if !json {
+        report::line(&format!(
+            "{}: {}, {}, nothing wrong",
+            path.display(),
+            count(graph.by_name.len(), "node"),
+            count(graph.outputs.len(), "output")
+        ));
+    }
+    Exit::Done
 }
 
 /// A number of things, in words that fit it.

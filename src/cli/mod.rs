@@ -1,13 +1,19 @@
 //! The command line: arguments, subcommands and exit codes.
 
+mod cache;
 mod check;
+mod completions;
+mod kind_json;
+mod listen;
+mod man;
 mod nodes;
+mod options;
 mod render;
 mod report;
 mod sample;
+mod why;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use fearless_simd::Level;
+use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -26,12 +32,20 @@ const EXIT_CODES: &str = "Exit codes: 0 done, 1 a node failed, 2 the recipe or t
 enum Command {
     /// Render the outputs of recipes into image files.
     Render(render::Arguments),
-    /// Report everything that is wrong with recipes, without rendering.
+    /// Report everything that is wrong with recipes: builds their nodes, but evaluates and writes nothing.
     Check(check::Arguments),
+    /// Explain what a render would do with a node or an output, and why.
+    Why(why::Arguments),
     /// Print the values of a node's field at points from a CSV file.
     Sample(sample::Arguments),
     /// List the kinds of nodes, or describe one.
     Nodes(nodes::Arguments),
+    /// Say what the store of earlier results holds, or remove it.
+    Cache(cache::Arguments),
+    /// Print a script that completes commands and options in a shell.
+    Completions(completions::Arguments),
+    /// Print the manual page of the program or of a command, in roff.
+    Man(man::Arguments),
 }
 
 /// How a command ended.
@@ -60,66 +74,6 @@ struct RecipeArguments {
     /// Print events and diagnostics as JSON, one a line.
     #[arg(long)]
     json: bool,
-}
-
-/// What the engine may use.
-#[derive(Args)]
-struct EngineArguments {
-    /// Number of threads [default: all processors].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-    /// Vector instructions to use, at most; the result is the same.
-    #[arg(long)]
-    simd: Option<Simd>,
-}
-
-/// Levels of vector instructions.
-#[derive(Clone, Copy, ValueEnum)]
-enum Simd {
-    Baseline,
-    #[value(name = "sse4.2")]
-    Sse42,
-    Avx2,
-    Avx512,
-}
-
-impl EngineArguments {
-    /// The level to use.
-    ///
-    /// # Errors
-    /// If this machine does not have it.
-    fn level(&self) -> Result<Option<Level>, String> {
-        let Some(simd) = self.simd else {
-            return Ok(None);
-        };
-        simd.level().map(Some).ok_or_else(|| {
-            let name = simd
-                .to_possible_value()
-                .map(|value| value.get_name().to_owned());
-            format!(
-                "this machine has no {}; leave `--simd` out",
-                name.unwrap_or_default()
-            )
-        })
-    }
-}
-
-impl Simd {
-    #[cfg(target_arch = "x86_64")]
-    fn level(self) -> Option<Level> {
-        let best = Level::new();
-        match self {
-            Simd::Baseline => Some(Level::baseline()),
-            Simd::Sse42 => best.as_sse4_2().map(Level::Sse4_2),
-            Simd::Avx2 => best.as_avx2().map(Level::Avx2),
-            Simd::Avx512 => best.as_avx512().map(Level::Avx512),
-        }
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    fn level(self) -> Option<Level> {
-        matches!(self, Simd::Baseline).then(Level::baseline)
-    }
 }
 
 impl RecipeArguments {
@@ -152,8 +106,12 @@ pub(crate) fn main() -> ExitCode {
     let exit = match Arguments::parse().command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Why(arguments) => why::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Nodes(arguments) => nodes::run(&arguments),
+        Command::Cache(arguments) => cache::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+        Command::Man(arguments) => man::run(&arguments),
     };
-    ExitCode::from(exit as u8)
+    ExitCode::from(report::at_the_end(exit) as u8)
 }

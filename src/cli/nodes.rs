@@ -1,7 +1,7 @@
 //! `yosegi nodes`: what kinds of nodes there are.
 
+use super::kind_json::KindJson;
 use super::{Exit, report};
-use serde_json::{Value, json};
 use yosegi::diagnostics::nearest;
 use yosegi::node::{Input, Kind, Output, Presence, Varies};
 use yosegi::nodes::{KINDS, kind};
@@ -19,25 +19,46 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Exit {
     match &arguments.kind {
         None if arguments.json => {
-            let kinds: Vec<Value> = KINDS.iter().map(|kind| describe_json(kind)).collect();
-            report::line(&format!("{:#}", Value::Array(kinds)));
+            let kinds: Vec<KindJson> = KINDS.iter().map(|kind| KindJson::from(*kind)).collect();
+            report::json(&kinds);
         }
         None => list(),
         Some(name) => match kind(name) {
-            Some(kind) if arguments.json => report::line(&format!("{:#}", describe_json(kind))),
+            Some(kind) if arguments.json => report::json(&KindJson::from(kind)),
             Some(kind) => report::line(&describe(kind)),
             None => {
-                let names = nearest(name, KINDS.iter().map(|kind| kind.name));
-                let hint = match names.first() {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => "`yosegi nodes` lists all kinds".to_owned(),
-                };
+                let hint = hint(&near(name));
                 report::problem(&format!("there is no kind `{name}`; {hint}"));
                 return Exit::Wrong;
             }
         },
     }
     Exit::Done
+}
+
+/// The kinds that may have been meant: by the whole name, or else by one of its words.
+fn near(wrong: &str) -> Vec<String> {
+    let names = || KINDS.iter().map(|kind| kind.name);
+    let whole = nearest(wrong, names());
+    if !whole.is_empty() {
+        return whole;
+    }
+    let words = nearest(wrong, names().flat_map(|name| name.split('_')));
+    let has_word = |name: &&str| {
+        words
+            .iter()
+            .any(|word| name.split('_').any(|it| it == word))
+    };
+    names().filter(has_word).map(str::to_owned).collect()
+}
+
+fn hint(near: &[String]) -> String {
+    let quoted: Vec<String> = near.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.split_last() {
+        Some((only, [])) => format!("did you mean {only}?"),
+        Some((last, rest)) => format!("did you mean {} or {last}?", rest.join(", ")),
+        None => "`yosegi nodes` lists all kinds".to_owned(),
+    }
 }
 
 fn list() {
@@ -115,40 +136,4 @@ fn output_type(output: &Output) -> String {
         (Varies::PerPoint, None) => ", defined where the inputs are".to_owned(),
     };
     format!("{}{domain}", output.value_type)
-}
-
-fn describe_json(kind: &Kind) -> Value {
-    json!({
-        "name": kind.name,
-        "version": kind.version,
-        "about": kind.about,
-        "source": kind.source,
-        "example": kind.example,
-        "inputs": kind.inputs.iter().map(input_json).collect::<Vec<_>>(),
-        "outputs": kind.outputs.iter().map(|output| json!({
-            "name": output.name,
-            "type": output.value_type.to_string(),
-            "varies": output.varies == Varies::PerPoint,
-            "domain": output.domain.map(|domain| domain.to_string()),
-            "about": output.about,
-        })).collect::<Vec<_>>(),
-    })
-}
-
-fn input_json(input: &Input) -> Value {
-    let default = match input.presence {
-        Presence::Default(literal) => Some(literal),
-        _ => None,
-    };
-    json!({
-        "name": input.name,
-        "type": input.value_type.to_string(),
-        "per_point": input.varies == Varies::PerPoint,
-        "domain": input.domain.map(|domain| domain.to_string()),
-        "required": input.presence == Presence::Required,
-        "default": default,
-        "range": input.range.map(|(low, high)| [low, high]),
-        "about": input.about,
-        "parts": parts(input.value_type).iter().map(input_json).collect::<Vec<_>>(),
-    })
 }

@@ -1,8 +1,10 @@
 //! What is said to the user: diagnostics, results, and the exit code that follows from them.
 
 use super::Exit;
+use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::OnceLock;
 use yosegi::diagnostics::{Code, Diagnostic, render_all, render_all_styled, render_json};
 use yosegi::engine::RunError;
 use yosegi::graph::{Graph, Settings, load};
@@ -68,7 +70,7 @@ pub(super) fn diagnostics(list: &[Diagnostic], json: bool) {
 
 /// Says something about the call itself.
 pub(super) fn problem(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "error: {text}");
+    note(&format!("error: {text}"));
 }
 
 /// A warning that a node gives while it is built.
@@ -76,9 +78,46 @@ pub(super) fn warning_of(node: &str, message: &str) -> String {
     format!("warning: node `{node}`: {message}")
 }
 
-/// Prints a line of the result; a closed pipe ends the program quietly.
+/// Prints a line to stderr.
+pub(super) fn note(text: &str) {
+    // Nobody is left to tell that stderr is closed.
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// What kept the first line from being printed that was not.
+static NOT_PRINTED: OnceLock<String> = OnceLock::new();
+
+/// Prints a line of the result. A reader that has seen enough is no failure, and does not stop the
+/// program; any other fault is told by [`at_the_end`].
 pub(super) fn line(text: &str) {
-    if writeln!(io::stdout().lock(), "{text}").is_err() {
-        std::process::exit(Exit::Done as i32);
+    match writeln!(io::stdout().lock(), "{text}") {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            NOT_PRINTED.get_or_init(|| error.to_string());
+        }
+        _ => {}
+    }
+}
+
+/// Prints a result as JSON, on one line.
+pub(super) fn json(result: &impl Serialize) {
+    match serde_json::to_string(result) {
+        Ok(text) => line(&text),
+        Err(error) => {
+            NOT_PRINTED.get_or_init(|| error.to_string());
+        }
+    }
+}
+
+/// The exit code of the program, given that of the command: a result that could not be printed is a
+/// fault of files.
+pub(super) fn at_the_end(exit: Exit) -> Exit {
+    let Some(error) = NOT_PRINTED.get() else {
+        return exit;
+    };
+    problem(&format!("cannot write the result: {error}"));
+    if exit == Exit::Done {
+        Exit::Files
+    } else {
+        exit
     }
 }

@@ -1,6 +1,7 @@
 //! `yosegi sample`: values of a node's field at points from a CSV file.
 
-use super::{EngineArguments, Exit, RecipeArguments, report};
+use super::options::EngineArguments;
+use super::{Exit, RecipeArguments, report};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use yosegi::engine::{Engine, Event, Options, SampledField};

@@ -42,6 +42,21 @@ struct Cell {
 }
 
 impl Built {
+    /// Nothing of a plan.
+    pub(super) fn empty(plan: &Plan<'_>) -> Built {
+        let cell = |node: &NodeIndex| (*node, Cell::new(plan, *node));
+        Built {
+            cells: plan.order.iter().map(cell).collect(),
+            failures: vec![],
+        }
+    }
+
+    /// Puts a structure in its place, which must be empty.
+    pub(super) fn put(&self, node: NodeIndex, structure: Structure) {
+        let stored = self.cells[&node].result.set(Some(structure));
+        debug_assert!(stored.is_ok(), "a node is built once");
+    }
+
     /// Whether everything is there.
     ///
     /// # Errors
@@ -91,15 +106,7 @@ impl Builder<'_> {
     /// # Errors
     /// [`RunError::Cancelled`].
     pub(super) fn build(&self, plan: &Plan<'_>) -> Result<Built, RunError> {
-        let cells = plan
-            .order
-            .iter()
-            .map(|node| (*node, Cell::new(plan, *node)))
-            .collect();
-        let mut built = Built {
-            cells,
-            failures: vec![],
-        };
+        let mut built = Built::empty(plan);
         let failures = Failures::default();
         // Looked up before anything runs: later a node may be ready because another has started it.
         let ready: Vec<NodeIndex> = plan
@@ -239,15 +246,15 @@ impl Failures {
 }
 
 /// Finds the values of a node's inputs.
-struct Resolver<'a> {
-    plan: &'a Plan<'a>,
-    built: &'a Built,
-    node: &'a Node,
+pub(super) struct Resolver<'a> {
+    pub(super) plan: &'a Plan<'a>,
+    pub(super) built: &'a Built,
+    pub(super) node: &'a Node,
 }
 
 impl Resolver<'_> {
     /// The inputs in order; `None` if something they link to has failed.
-    fn inputs(&self) -> Option<Vec<Option<Value>>> {
+    pub(super) fn inputs(&self) -> Option<Vec<Option<Value>>> {
         self.node
             .inputs
             .iter()
@@ -302,7 +309,7 @@ impl Resolver<'_> {
     }
 
     /// What the node is made of: its kind, its literals, and the content of what it links to.
-    fn content_key(&self) -> Key {
+    pub(super) fn content_key(&self) -> Key {
         let mut key = KeyHasher::new("structure", self.node.kind.version);
         key.text(self.node.kind.name);
         if self.node.kind.draws() {

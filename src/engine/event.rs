@@ -42,14 +42,22 @@ pub enum Event {
         /// Tiles that needed nothing but cached columns of the node.
         reused: usize,
     },
-    /// Tiles of an output that are done.
+    /// Tiles of an output that are done; at most ten a second, and one at the end of each output.
     Progress {
-        /// The output.
+        /// The output that is being painted.
         output: String,
-        /// Tiles done so far.
+        /// Tiles of it done so far.
         done: usize,
-        /// All tiles.
+        /// All tiles of it.
         total: usize,
+        /// Maps of the run that are in their places.
+        maps_done: usize,
+        /// All maps of the run.
+        maps_total: usize,
+        /// How much of the painting of the run is done, from 0 to 1: pixels times maps.
+        fraction: f64,
+        /// How long the rest takes at the measured pace; `None` as long as that would be a guess.
+        seconds_left: Option<f64>,
     },
     /// A map is in its place.
     MapWritten {
@@ -89,6 +97,15 @@ pub enum Event {
         not_finite: u64,
         /// Samples outside the range that the format can hold.
         clamped: u64,
+    },
+    /// A file that an earlier run wrote for the output, which no longer asks for it; it is left alone.
+    MapStale {
+        /// The output.
+        output: String,
+        /// The channel.
+        channel: String,
+        /// The file.
+        path: PathBuf,
     },
     /// An output is complete.
     OutputDone {

@@ -3,24 +3,34 @@
 mod arithmetic;
 mod build;
 mod cancel;
+mod check;
 mod content;
 mod event;
 mod files;
+mod keeping;
+mod known;
+mod look_up;
 mod memory;
+mod pace;
 mod paint;
 mod plan;
+mod progress;
 mod render;
 mod reuse;
 mod sample;
 mod store;
 mod target;
 mod wanted;
+mod why;
 
 pub use cancel::Cancel;
 pub use event::{Event, From as ReusedFrom, Listener};
+pub use keeping::{StoreFamily, clean_store, store_status};
+pub use pace::Pace;
 pub use render::{Render, RenderedMap};
 pub use sample::SampledField;
 pub use target::FlatPiece;
+pub use why::{Cause, Explained, Fate, Why};
 
 use crate::diagnostics::{Code, Diagnostic};
 use crate::field::{ColumnCache, RunContext};

@@ -4,6 +4,7 @@
 //! before are compressed and written.
 
 use super::event::{Event, Listener};
+use super::progress::Meter;
 use super::{Cancel, Options, RunError};
 use crate::field::{Field, PixelGrid, Program, RunContext, Samples, Scratch, Target, Work};
 use crate::output::{Encoder, Faults, MapWriter};
@@ -28,6 +29,7 @@ pub(super) struct Painter<'a> {
     pub(super) context: RunContext<'a>,
     pub(super) listener: &'a dyn Listener,
     pub(super) cancel: &'a Cancel,
+    pub(super) meter: &'a Meter<'a>,
 }
 
 /// A rectangle of pixels.
@@ -45,6 +47,14 @@ struct Painted {
     work: BTreeMap<Arc<str>, Work>,
 }
 
+/// The number of tiles of a picture.
+pub(super) fn tile_count(pixels: [u32; 2], side: u32) -> usize {
+    pixels
+        .map(|length| length.div_ceil(side) as usize)
+        .iter()
+        .product()
+}
+
 /// Bands of tiles, each from left to right.
 type Window = Vec<Vec<Painted>>;
 
@@ -59,7 +69,6 @@ impl Painter<'_> {
         let program = Program::compile(&fields);
         let scratches = Mutex::new(vec![]);
         let windows = self.windows();
-        let total = windows.iter().flatten().map(Vec::len).sum();
         let mut tally = Tally::default();
         let mut waiting: Option<Window> = None;
         for window in windows {
@@ -68,14 +77,14 @@ impl Painter<'_> {
                 || {
                     waiting
                         .take()
-                        .map_or(Ok(0), |window| tally.write(sheets, window))
+                        .map_or(Ok(()), |window| tally.write(sheets, window))
                 },
             );
-            self.progress(written?, &mut tally, total);
+            written?;
             waiting = Some(painted.ok_or(PaintError::Cancelled)?);
         }
-        let written = waiting.map_or(Ok(0), |window| tally.write(sheets, window))?;
-        self.progress(written, &mut tally, total);
+        waiting.map_or(Ok(()), |window| tally.write(sheets, window))?;
+        self.meter.tiles_done();
         tally.report(self.output, self.listener);
         Ok(())
     }
@@ -118,6 +127,7 @@ impl Painter<'_> {
             let mut scratch = lock(scratches).pop().unwrap_or_default();
             let painted = self.paint_tile(program, encoders, *tile, &mut scratch);
             lock(scratches).push(scratch);
+            self.meter.tile();
             Some(painted)
         };
         window
@@ -169,18 +179,6 @@ impl Painter<'_> {
         }
         painted
     }
-
-    fn progress(&self, written: usize, tally: &mut Tally, total: usize) {
-        tally.tiles += written;
-        if written > 0 {
-            let output = self.output.to_owned();
-            self.listener.hear(Event::Progress {
-                output,
-                done: tally.tiles,
-                total,
-            });
-        }
-    }
 }
 
 /// Why painting stopped.
@@ -207,14 +205,13 @@ impl From<PaintError> for RunError {
 /// Counts what the tiles report.
 #[derive(Default)]
 struct Tally {
-    tiles: usize,
     /// Tiles computed and reused, by node.
     work: BTreeMap<Arc<str>, [usize; 2]>,
 }
 
 impl Tally {
-    /// Writes the rows of a window into every sheet; gives the number of its tiles.
-    fn write(&mut self, sheets: &mut [Sheet], window: Window) -> io::Result<usize> {
+    /// Writes the rows of a window into every sheet.
+    fn write(&mut self, sheets: &mut [Sheet], window: Window) -> io::Result<()> {
         sheets
             .par_iter_mut()
             .enumerate()
@@ -238,7 +235,7 @@ impl Tally {
                 *reused += usize::from(work.reused && !work.computed);
             }
         }
-        Ok(window.iter().map(Vec::len).sum())
+        Ok(())
     }
 
     fn report(self, output: &str, listener: &dyn Listener) {

@@ -58,6 +58,13 @@ impl<'g> Plan<'g> {
         key.finish()
     }
 
+    /// Identifies the literal of an input, or all that it is linked to.
+    pub(super) fn source_key(&self, source: &Source) -> Key {
+        let mut key = KeyHasher::new("source", 1);
+        self.add_source(&mut key, source);
+        key.finish()
+    }
+
     fn add_source(&self, key: &mut KeyHasher, source: &Source) {
         match source {
             Source::Absent => {

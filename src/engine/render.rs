@@ -2,19 +2,19 @@
 
 use super::build::Built;
 use super::event::{Event, Listener};
-use super::paint::{Painter, Sheet};
-use super::plan::{Plan, ancestors};
-use super::store::Store;
-use super::{Cancel, Engine, FlatPiece, RESULTS, RunError, files};
+use super::known::{KnownMap, KnownOutput, OutputRecord, repeat_warnings};
+use super::paint::{self, Painter, Sheet};
+use super::plan::Plan;
+use super::progress::Meter;
+use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::field::Target;
 use crate::graph::{Graph, no_output};
-use crate::key::{Key, KeyHasher};
+use crate::key::Key;
 use crate::output::{self, Encoder, Faults, MapRequest};
 use crate::value::Maps;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -46,14 +46,6 @@ pub struct RenderedMap {
     pub path: PathBuf,
 }
 
-/// What the store remembers of an output.
-#[derive(Debug, Serialize, Deserialize)]
-struct OutputRecord {
-    maps: Vec<WantedMap>,
-    /// The plan keys of nodes with what they warned of.
-    warnings: Vec<(Key, String)>,
-}
-
 /// A map that an output asks for.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct WantedMap {
@@ -81,70 +73,62 @@ impl Engine {
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
         let plan = self.plan(request.graph, &wanted)?;
-        let output = |index| Output {
-            engine: self,
-            request,
-            plan: &plan,
-            index,
-        };
-        let outputs: Vec<Output<'_>> = wanted.into_iter().map(output).collect();
-        let known: Vec<Option<OutputRecord>> = outputs.iter().map(Output::known_maps).collect();
-        let missing = outputs
-            .iter()
-            .zip(&known)
-            .filter(|(_, known)| known.is_none());
+        let outputs = self.outputs(request, &plan, &wanted);
+        let known: Vec<Option<KnownOutput>> = outputs.iter().map(Output::known).collect();
+        let missing = outputs.iter().zip(&known).filter(|(_, it)| it.is_none());
         let missing: Vec<NodeIndex> = missing.map(|(output, _)| output.index).collect();
         let rest = self.plan(request.graph, &missing)?;
         let built = self.build(&rest, request.listener, &request.cancel)?;
-        let mut repeated = BTreeSet::new();
-        for record in known.iter().flatten() {
-            repeat_warnings(record, request, &plan, &built, &mut repeated);
+        repeat_warnings(known.iter().flatten(), request, &plan, &built);
+        let known = known.into_iter().map(|known| Some(known?.maps));
+        let known: Vec<Option<Vec<KnownMap>>> = known.collect();
+        let names = outputs.iter().zip(&known);
+        let names: Vec<(NodeIndex, String)> = names
+            .flat_map(|(output, known)| output.file_names(known.as_deref(), &built))
+            .collect();
+        files::refuse_shared(request.graph, names.iter().cloned())?;
+        let meter = Meter::new(request.listener);
+        for (output, known) in outputs.iter().zip(&known) {
+            output.expect(known.as_deref(), &built, &meter)?;
         }
-        let known = known.into_iter().map(|record| Some(record?.maps));
-        let known: Vec<Option<Vec<WantedMap>>> = known.collect();
-        let pairs = || outputs.iter().zip(&known);
-        let names = pairs().flat_map(|(output, known)| output.file_names(known.as_deref(), &built));
-        files::refuse_shared(request.graph, names)?;
-        for output in outputs.iter().filter(|output| built.has(output.index)) {
-            output.check_size(output.maps(&built))?;
-        }
+        let names: Vec<&str> = names.iter().map(|(_, name)| name.as_str()).collect();
         let mut rendered = vec![];
-        for (output, known) in outputs.iter().zip(known) {
-            rendered.extend(match known {
-                Some(maps) => output.announce(maps),
-                None if built.has(output.index) => output.paint(&built)?,
-                // An output that depends on a failed node does not keep the others from being rendered.
-                None => vec![],
-            });
+        for (output, known) in outputs.iter().zip(&known) {
+            let maps = output.make(known.as_deref(), &built, &meter)?;
+            meter.count().finish(maps.len());
+            if !maps.is_empty() {
+                output.tell_stale(&names);
+            }
+            rendered.extend(maps);
         }
         built.complete()?;
-        Ok(rendered)
-    }
-}
-
-/// Says again what the nodes of an output warned of that need not be built any more.
-fn repeat_warnings<'r>(
-    record: &'r OutputRecord,
-    request: &Render<'_>,
-    plan: &Plan<'_>,
-    built: &Built,
-    repeated: &mut BTreeSet<(&'r Key, &'r str)>,
-) {
-    for (key, message) in &record.warnings {
-        let Some(node) = plan.order.iter().find(|node| plan.keys[node] == *key) else {
-            continue;
-        };
-        if !built.has(*node) && repeated.insert((key, message)) {
-            request.listener.hear(Event::Warning {
-                node: request.graph.nodes[*node].name.to_string(),
-                message: message.clone(),
+        if let Err(error) = self.record_run(&plan, request.pixels) {
+            request.listener.hear(Event::StoreFailed {
+                reason: error.to_string(),
             });
         }
+        Ok(rendered)
+    }
+
+    /// Outputs of a run.
+    pub(super) fn outputs<'a>(
+        &'a self,
+        request: &'a Render<'a>,
+        plan: &'a Plan<'a>,
+        wanted: &[NodeIndex],
+    ) -> Vec<Output<'a>> {
+        let output = |index: &NodeIndex| Output {
+            engine: self,
+            request,
+            plan,
+            index: *index,
+        };
+        wanted.iter().map(output).collect()
     }
 }
 
 /// The outputs that the caller asks for.
-fn chosen_outputs(request: &Render<'_>) -> Result<Vec<NodeIndex>, RunError> {
+pub(super) fn chosen_outputs(request: &Render<'_>) -> Result<Vec<NodeIndex>, RunError> {
     let graph = request.graph;
     if graph.outputs.is_empty() {
         return Err(RunError::Request(vec![no_output(graph)]));
@@ -180,69 +164,78 @@ impl Output<'_> {
         &self.request.graph.nodes[self.index].name
     }
 
-    /// What the output is before anything has run.
-    fn plan_key(&self) -> Key {
-        let mut key = KeyHasher::new("output", RESULTS);
-        key.key(self.plan.keys[&self.index]).text(self.name());
-        key.whole(i64::from(self.engine.options.filtering));
-        self.request.pixels.iter().flatten().for_each(|side| {
-            key.whole(i64::from(*side));
-        });
-        key.finish()
-    }
-
-    /// The maps, if the store knows them all and they are in place or can be put there.
-    fn known_maps(&self) -> Option<OutputRecord> {
-        let store = self.engine.store.as_ref()?;
-        let bytes = store.get("plan", &self.plan_key())?;
-        let record: OutputRecord = postcard::from_bytes(&bytes).ok()?;
-        let maps = record.maps.iter();
-        let events: Option<Vec<Event>> = maps.map(|map| self.in_place(store, map)).collect();
-        events?
-            .into_iter()
-            .for_each(|event| self.request.listener.hear(event));
-        Some(record)
-    }
-
-    fn path(&self, map: &WantedMap) -> PathBuf {
-        self.request.folder.join(&map.file_name)
-    }
-
-    /// That the file is there as it should be, restored from the store if need be.
-    fn in_place(&self, store: &Store, map: &WantedMap) -> Option<Event> {
-        let record = store.map(&map.key)?;
-        let path = self.path(map);
-        let (output, channel) = (self.name().to_owned(), map.channel.clone());
-        let [not_finite, clamped] = record.faults;
-        if store.matches(&record, &map.key, &path) {
-            return Some(Event::MapUpToDate {
-                output,
-                channel,
-                path,
-                not_finite,
-                clamped,
-            });
+    /// Counts the output's maps, and refuses those that are too large.
+    pub(super) fn expect(
+        &self,
+        known: Option<&[KnownMap]>,
+        built: &Built,
+        meter: &Meter<'_>,
+    ) -> Result<(), RunError> {
+        if let Some(known) = known {
+            meter.count().expect(known.len(), 0, [0, 0]);
+        } else if built.has(self.index) {
+            let maps = self.maps(built);
+            let (count, pixels) = (maps.channels.len(), self.pixels(maps));
+            self.check_size(maps)?;
+            meter.count().expect(count, count, pixels);
         }
-        store.restore(&record, &path).then_some(Event::MapRestored {
-            output,
-            channel,
-            path,
-            not_finite,
-            clamped,
-        })
+        Ok(())
     }
 
-    /// Paints what is not in place.
-    fn paint(&self, built: &Built) -> Result<Vec<RenderedMap>, RunError> {
+    /// Puts the output's maps in their places; none if it depends on a failed node, which does not keep
+    /// the other outputs from being rendered.
+    fn make(
+        &self,
+        known: Option<&[KnownMap]>,
+        built: &Built,
+        meter: &Meter<'_>,
+    ) -> Result<Vec<RenderedMap>, RunError> {
+        let Some(known) = known else {
+            return if built.has(self.index) {
+                self.paint(built, meter, &[])
+            } else {
+                Ok(vec![])
+            };
+        };
+        let (placed, lost): (Vec<&KnownMap>, Vec<&KnownMap>) =
+            known.iter().partition(|known| self.put_in_place(known));
+        if lost.is_empty() {
+            return Ok(self.announce(placed.into_iter().map(|known| &known.map)));
+        }
+        // The store has lost a map since it was asked: the output has to be made after all.
+        let alone = self.engine.plan(self.request.graph, &[self.index])?;
+        let (listener, cancel) = (self.request.listener, &self.request.cancel);
+        let built = self.engine.build(&alone, listener, cancel)?;
+        built.complete()?;
+        let told: Vec<&str> = placed.iter().map(|known| &*known.map.channel).collect();
+        let maps = self.maps(&built);
+        self.check_size(maps)?;
+        let painted = maps.channels.len();
+        meter.count().expect(0, painted, self.pixels(maps));
+        self.paint(&built, meter, &told)
+    }
+
+    /// Paints what is not in place; of the channels in `told` that was said already.
+    fn paint(
+        &self,
+        built: &Built,
+        meter: &Meter<'_>,
+        told: &[&str],
+    ) -> Result<Vec<RenderedMap>, RunError> {
         let start = Instant::now();
         let maps = self.maps(built);
-        let target = FlatPiece::new(self.pixels(maps), maps.size);
+        let pixels = self.pixels(maps);
+        let target = FlatPiece::new(pixels, maps.size);
         let wanted = self.wanted_maps(maps, &target);
-        let missing: Vec<&WantedMap> = wanted.iter().filter(|map| !self.found(map)).collect();
+        let is_there = |map: &WantedMap| told.contains(&&*map.channel) || self.found(map);
+        let missing: Vec<&WantedMap> = wanted.iter().filter(|map| !is_there(map)).collect();
+        let tiles = paint::tile_count(pixels, self.engine.options.tile);
+        let share = [missing.len(), wanted.len() - missing.len()];
+        meter.count().begin(self.name(), share, pixels, tiles);
         let faults = if missing.is_empty() {
             vec![]
         } else {
-            self.write_maps(maps, &target, &missing)?
+            self.write_maps(maps, &target, &missing, meter)?
         };
         self.remember(&wanted, built, missing.into_iter().zip(faults));
         let (output, milliseconds) = (self.name().to_owned(), start.elapsed().as_secs_f64() * 1e3);
@@ -250,18 +243,13 @@ impl Output<'_> {
             output,
             milliseconds,
         });
-        Ok(self.announce(wanted))
+        Ok(self.announce(&wanted))
     }
 
-    /// Whether the map is in place; says so.
+    /// Whether the map is in place or can be put there; says so.
     fn found(&self, map: &WantedMap) -> bool {
-        let store = self.engine.store.as_ref();
-        let event = store.and_then(|store| self.in_place(store, map));
-        let found = event.is_some();
-        event
-            .into_iter()
-            .for_each(|event| self.request.listener.hear(event));
-        found
+        let known = self.known_map(map);
+        known.is_some_and(|known| self.put_in_place(&known))
     }
 
     fn write_maps(
@@ -269,6 +257,7 @@ impl Output<'_> {
         maps: &Maps,
         target: &FlatPiece,
         missing: &[&WantedMap],
+        meter: &Meter<'_>,
     ) -> Result<Vec<Faults>, RunError> {
         let sheets: io::Result<Vec<Sheet>> = missing
             .iter()
@@ -282,6 +271,7 @@ impl Output<'_> {
             context: self.engine.context(),
             listener: self.request.listener,
             cancel: &self.request.cancel,
+            meter,
         };
         painter.paint(&mut sheets)?;
         let faults = sheets.iter().map(|sheet| sheet.faults).collect();
@@ -348,22 +338,11 @@ impl Output<'_> {
         }
     }
 
-    /// What the nodes that the output depends on warned of.
-    fn warnings(&self, built: &Built) -> Vec<(Key, String)> {
-        let nodes = ancestors(self.request.graph, &[self.index]).into_iter();
-        let said = |node: NodeIndex| {
-            let key = self.plan.keys[&node];
-            let warnings = built.warnings(node).iter();
-            warnings.map(move |message| (key, message.clone()))
-        };
-        nodes.flat_map(said).collect()
-    }
-
-    fn announce(&self, maps: Vec<WantedMap>) -> Vec<RenderedMap> {
-        let rendered = |map: WantedMap| RenderedMap {
+    fn announce<'m>(&self, maps: impl IntoIterator<Item = &'m WantedMap>) -> Vec<RenderedMap> {
+        let rendered = |map: &WantedMap| RenderedMap {
             output: self.name().to_owned(),
-            path: self.path(&map),
-            channel: map.channel,
+            path: self.path(map),
+            channel: map.channel.clone(),
         };
         maps.into_iter().map(rendered).collect()
     }

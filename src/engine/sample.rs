@@ -1,4 +1,4 @@
-//! Samples fields of any node at points of the caller's own, unfiltered.
+//! Samples fields of any node at points of the caller's own, unfiltered and on all threads.
 
 use super::event::Listener;
 use super::{Cancel, Engine, RunError};
@@ -8,6 +8,7 @@ use crate::graph::{Graph, Link};
 use crate::node::{Output, field_of};
 use crate::value::{Type, Value};
 use petgraph::graph::NodeIndex;
+use rayon::prelude::*;
 
 /// Points evaluated in one go.
 const BLOCK: usize = 4096;
@@ -62,22 +63,29 @@ impl Engine {
     pub fn sample(&self, fields: &[SampledField], points: &[[f64; 3]]) -> Vec<Vec<Vec<f32>>> {
         let plain: Vec<Field> = fields.iter().map(|sampled| sampled.field.clone()).collect();
         let program = Program::compile(&plain);
-        let mut scratch = Scratch::default();
         let mut context = self.context();
         context.cache = None;
-        let mut values: Vec<Vec<Vec<f32>>> = plain
-            .iter()
-            .map(|field| vec![vec![]; field.width()])
-            .collect();
-        for points in points.chunks(BLOCK) {
-            program.run(&Samples::Points(points), &mut scratch, &context);
-            for (output, columns) in values.iter_mut().enumerate() {
-                for (values, column) in columns.iter_mut().zip(program.columns(&scratch, output)) {
-                    values.extend_from_slice(&column[..points.len()]);
-                }
-            }
-        }
-        values
+        let sample = |scratch: &mut Scratch, points: &[[f64; 3]]| {
+            program.run(&Samples::Points(points), scratch, &context);
+            let taken = |column: &[f32]| column[..points.len()].to_vec();
+            let columns = |output| program.columns(scratch, output).into_iter().map(taken);
+            (0..plain.len())
+                .map(|output| columns(output).collect())
+                .collect()
+        };
+        let blocks: Vec<Vec<Vec<Vec<f32>>>> = self.threads.install(|| {
+            let blocks = points.par_chunks(BLOCK);
+            blocks.map_init(Scratch::default, sample).collect()
+        });
+        let column = |output: usize, column: usize| {
+            let parts = blocks.iter().map(|block| block[output][column].as_slice());
+            parts.collect::<Vec<_>>().concat()
+        };
+        let columns = |(output, field): (usize, &Field)| {
+            let columns = 0..field.width();
+            columns.map(|index| column(output, index)).collect()
+        };
+        plain.iter().enumerate().map(columns).collect()
     }
 }
 

@@ -15,6 +15,12 @@ use std::sync::Arc;
 /// Raised when the layout of entries changes.
 const LAYOUT: &[u8; 8] = b"yosegi01";
 
+/// What every layout begins with.
+pub(super) const LAYOUT_NAME: &[u8] = b"yosegi";
+
+/// The families of entries, each a folder of the store.
+pub(super) const FAMILIES: [&str; 5] = ["structure", "map", "file", "plan", "run"];
+
 /// Layout, and the hexadecimal digits of a key and of a checksum.
 const HEADER: usize = LAYOUT.len() + 64 + 64;
 
@@ -97,6 +103,17 @@ impl Store {
             && self
                 .hash(path)
                 .is_ok_and(|found| found == (record.file, record.bytes))
+    }
+
+    /// Whether the contents of a remembered map seem to be there; only [`Store::restore`] looks at them all.
+    pub(super) fn holds(&self, record: &MapRecord) -> bool {
+        // The key of a file is its checksum.
+        let digits = record.file.hexadecimal();
+        let expected = [LAYOUT, digits.as_bytes(), digits.as_bytes()].concat();
+        let start = self
+            .world
+            .read_start(&self.path("file", &record.file), HEADER);
+        start.is_ok_and(|start| start == expected)
     }
 
     /// Puts a remembered map at `path`; false if its contents are not in the store.

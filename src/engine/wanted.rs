@@ -1,6 +1,7 @@
 //! What an output asks for: its maps, their fields, files and keys, and whether they are too large.
 
 use super::build::Built;
+use super::known::KnownMap;
 use super::render::{Output, WantedMap};
 use super::{FlatPiece, RESULTS, RunError, files};
 use crate::diagnostics::{Code, Diagnostic};
@@ -23,11 +24,11 @@ impl Output<'_> {
     /// The files that the output writes or has written, with its own index.
     pub(super) fn file_names(
         &self,
-        known: Option<&[WantedMap]>,
+        known: Option<&[KnownMap]>,
         built: &Built,
     ) -> Vec<(NodeIndex, String)> {
         let names: Vec<String> = match known {
-            Some(maps) => maps.iter().map(|map| map.file_name.clone()).collect(),
+            Some(maps) => maps.iter().map(|it| it.map.file_name.clone()).collect(),
             None if !built.has(self.index) => vec![],
             None => {
                 let maps = self.maps(built);

@@ -150,17 +150,26 @@ pub fn create(
 /// The key that a map was written with, read from the start of the file; `None` if there is no such
 /// file, or it is no PNG, TIFF or OpenEXR, or it carries no key. A BMP has no place for one.
 pub fn read_key(world: &dyn World, path: &Path) -> Option<Key> {
+    Key::from_hexadecimal(&read_text(world, path, KEY_NAME)?)
+}
+
+/// The name of the channel that a map was written for; `None` as for [`read_key`].
+pub fn read_channel(world: &dyn World, path: &Path) -> Option<String> {
+    read_text(world, path, CHANNEL_NAME)
+}
+
+/// The text that a map carries under `name`.
+fn read_text(world: &dyn World, path: &Path, name: &str) -> Option<String> {
     // Headers of ours end within the first thousand bytes; other programs write longer ones.
     const START: usize = 1 << 16;
     let start = world.read_start(path, START).ok()?;
-    let digits = if start.starts_with(b"\x89PNG") {
-        png::read_text(&start, KEY_NAME)
+    if start.starts_with(b"\x89PNG") {
+        png::read_text(&start, name)
     } else if start.starts_with(b"II") {
-        tiff::read_text(&start, KEY_NAME)
+        tiff::read_text(&start, name)
     } else {
-        exr::read_text(&start, KEY_NAME)
-    };
-    Key::from_hexadecimal(&digits?)
+        exr::read_text(&start, name)
+    }
 }
 
 /// A writer that gets whole rows, as many as the map has, and nothing more after an error.

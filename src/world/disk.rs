@@ -1,6 +1,6 @@
 //! The world on disk: files are replaced by a rename, so a reader sees the old one or the new one.
 
-use super::{PendingFile, World};
+use super::{Listed, PendingFile, World};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -30,12 +30,6 @@ impl World for Disk {
         Ok(bytes)
     }
 
-    fn list(&self, folder: &Path) -> io::Result<Vec<String>> {
-        let names =
-            fs::read_dir(folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-        Ok(names.collect())
-    }
-
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
         let path = behind_links(path)?;
         if path.exists() {
@@ -46,6 +40,32 @@ impl World for Disk {
         fs::create_dir_all(folder)?;
         let file = BufWriter::with_capacity(1 << 18, temporary_file(folder)?);
         Ok(Box::new(DiskFile { file, path }))
+    }
+
+    fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
+        let mut listed = vec![];
+        for entry in fs::read_dir(folder)? {
+            let entry = entry?;
+            let Ok(metadata) = fs::metadata(entry.path()) else {
+                // A link that leads nowhere, or a file that has just gone.
+                continue;
+            };
+            if metadata.is_file() || metadata.is_dir() {
+                let bytes = metadata.is_file().then_some(metadata.len());
+                let path = entry.path();
+                listed.push(Listed { path, bytes });
+            }
+        }
+        listed.sort();
+        Ok(listed)
+    }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        if fs::symlink_metadata(path)?.is_dir() {
+            fs::remove_dir(path)
+        } else {
+            fs::remove_file(path)
+        }
     }
 }
 
@@ -198,6 +218,26 @@ mod tests {
         assert_eq!(Disk.read_start(&path, 3).unwrap(), b"abc");
         assert_eq!(Disk.read_start(&path, 9).unwrap(), b"abcdef");
         assert!(Disk.read_start(folder.path(), 3).is_err());
+    }
+
+    #[test]
+    fn a_folder_is_listed_and_only_an_empty_one_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        write(&place("b"), b"four");
+        write(&place("a/c"), b"");
+        let listed = |name: &str, bytes| Listed {
+            path: place(name),
+            bytes,
+        };
+        let expected = [listed("a", None), listed("b", Some(4))];
+        assert_eq!(Disk.list(folder.path()).unwrap(), expected);
+        assert!(Disk.list(&place("b")).is_err());
+        assert!(Disk.remove(&place("a")).is_err());
+        for name in ["a/c", "a", "b"] {
+            Disk.remove(&place(name)).unwrap();
+        }
+        assert_eq!(names(folder.path()), [""; 0]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A world in memory, for tests and for callers that want maps without files.
 
-use super::{PendingFile, World};
+use super::{Listed, PendingFile, World};
 use std::collections::BTreeMap;
 use std::io::{self, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -33,15 +33,7 @@ impl Memory {
 
 impl World for Memory {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        let not_found = || io::Error::new(io::ErrorKind::NotFound, "no such file");
         self.lock().get(path).cloned().ok_or_else(not_found)
-    }
-
-    fn list(&self, folder: &Path) -> io::Result<Vec<String>> {
-        let files = self.lock();
-        let inside = files.keys().filter(|path| path.parent() == Some(folder));
-        let names = inside.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()));
-        Ok(names.collect())
     }
 
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
@@ -52,6 +44,33 @@ impl World for Memory {
             world: self.clone(),
         }))
     }
+
+    fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
+        let mut listed = BTreeMap::new();
+        for (path, contents) in self.lock().iter() {
+            let mut parts = match path.strip_prefix(folder) {
+                Ok(inside) => inside.components(),
+                Err(_) => continue,
+            };
+            if let Some(name) = parts.next() {
+                let is_file = parts.next().is_none();
+                listed.insert(folder.join(name), is_file.then_some(contents.len() as u64));
+            }
+        }
+        if listed.is_empty() {
+            return Err(not_found());
+        }
+        let entry = |(path, bytes)| Listed { path, bytes };
+        Ok(listed.into_iter().map(entry).collect())
+    }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        self.lock().remove(path).map(|_| ()).ok_or_else(not_found)
+    }
+}
+
+fn not_found() -> io::Error {
+    io::Error::new(io::ErrorKind::NotFound, "no such file")
 }
 
 struct MemoryFile {
@@ -100,6 +119,23 @@ mod tests {
         file.commit().unwrap();
         assert_eq!(world.read(path).unwrap(), b"new");
         assert_eq!(world.read_start(path, 2).unwrap(), b"ne");
+    }
+
+    #[test]
+    fn folders_are_what_paths_say() {
+        let world = Memory::default();
+        world.insert("maps/a", "four");
+        world.insert("maps/b/c", "");
+        let listed = |path: &str, bytes| Listed {
+            path: path.into(),
+            bytes,
+        };
+        let expected = [listed("maps/a", Some(4)), listed("maps/b", None)];
+        assert_eq!(world.list(Path::new("maps")).unwrap(), expected);
+        world.remove(Path::new("maps/a")).unwrap();
+        assert!(world.remove(Path::new("maps/a")).is_err());
+        assert_eq!(world.list(Path::new("maps")).unwrap(), expected[1..]);
+        assert!(world.list(Path::new("none")).is_err());
     }
 
     #[test]

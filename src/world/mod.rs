@@ -7,7 +7,16 @@ pub use disk::Disk;
 pub use memory::Memory;
 
 use std::io::{self, Read, Seek, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// One thing in a folder.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Listed {
+    /// Its path, the folder's included.
+    pub path: PathBuf,
+    /// Size in bytes; `None` for a folder.
+    pub bytes: Option<u64>,
+}
 
 /// Where recipes, assets and the store are read from, and where maps go.
 pub trait World: Send + Sync {
@@ -35,21 +44,28 @@ pub trait World: Send + Sync {
         Ok(bytes)
     }
 
-    /// The names of the files in a folder, in no order; a world without folders has none.
-    ///
-    /// # Errors
-    /// Whatever the operating system says.
-    fn list(&self, folder: &Path) -> io::Result<Vec<String>> {
-        let _ = folder;
-        Ok(vec![])
-    }
-
     /// Starts a file that appears at `path` only when it is committed. Missing folders are made; a
     /// symbolic link at `path` is followed.
     ///
     /// # Errors
     /// Whatever the operating system says.
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>>;
+
+    /// The regular files and the folders in a folder, sorted by path.
+    ///
+    /// # Errors
+    /// Whatever the operating system says; worlds without folders say [`io::ErrorKind::Unsupported`].
+    fn list(&self, _folder: &Path) -> io::Result<Vec<Listed>> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    /// Removes a file, or a folder that is empty; a symbolic link is removed itself.
+    ///
+    /// # Errors
+    /// As [`World::list`].
+    fn remove(&self, _path: &Path) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
 }
 
 /// A file that is not there yet: dropped without a commit, it leaves nothing behind.

@@ -2,8 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 mod exits;
+mod json;
 mod render;
+mod shell;
 mod tell;
+mod why;
 
 use assert_cmd::Command;
 use serde_json::Value;

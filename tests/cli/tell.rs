@@ -150,29 +150,42 @@ fn nodes_lists_and_describes_kinds() {
         stderr(&wrong),
         "error: there is no kind `growth_fild`; did you mean `growth_field`?\n"
     );
+    let part = stderr(&place.call(&["nodes", "patern"]));
+    for name in ["colour_pattern", "sample_pattern", "pattern_lookup"] {
+        assert!(part.contains(&format!("`{name}`")), "{part}");
+    }
+    let far = stderr(&place.call(&["nodes", "qqqqqqqq", "--json"]));
+    assert!(far.contains("`yosegi nodes` lists all kinds"), "{far}");
 }
 
 #[test]
-fn nodes_gives_json() {
-    let place = Place::new(BOARD);
-    let all: Value = serde_json::from_str(&stdout(&place.call(&["nodes", "--json"]))).unwrap();
-    let kinds = all.as_array().unwrap();
-    assert_eq!(kinds.len(), yosegi::nodes::KINDS.len());
-    let one: Value =
-        serde_json::from_str(&stdout(&place.call(&["nodes", "slice_cut", "--json"]))).unwrap();
-    assert!(kinds.contains(&one));
-    let input = |name: &str| {
-        one["inputs"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .find(|input| input["name"] == name)
-            .unwrap()
-            .clone()
-    };
-    assert_eq!(
-        (&input("cut")["default"], &input("of")["required"]),
-        (&Value::from("plane"), &Value::from(true))
+fn check_builds_nodes_and_says_where_a_file_is_missing() {
+    let place = Place::new(&edit(
+        r##"colour_pattern(stops: [(at: 0, colour: "#e8c99b"), (at: 1, colour: "#9a6438")])"##,
+        r#"sample_pattern(file: "none.png", spans: bar, rings: 4)"#,
+    ));
+    let check = || place.call(&["check", "recipe.ron", "--cache", "store"]);
+    let missing = check();
+    assert_eq!(code(&missing), 3);
+    assert!(
+        stderr(&missing).contains("none.png") && stderr(&missing).contains("recipe.ron:6"),
+        "{}",
+        stderr(&missing)
     );
-    assert_eq!(one["outputs"][0]["domain"], "plane");
+    place.write("none.png", "no picture");
+    let damaged = check();
+    assert_eq!(code(&damaged), 1);
+    assert!(
+        stderr(&damaged).contains("recipe.ron:6"),
+        "{}",
+        stderr(&damaged)
+    );
+    let place = Place::new(BOARD);
+    let large = ["check", "recipe.ron", "--max-pixels", "2999", "--no-cache"];
+    assert_eq!(code(&place.call(&large)), 4);
+    assert_eq!(
+        code(&place.call(&[&large[..], &["--size", "8x8"]].concat())),
+        0
+    );
+    assert_eq!(place.names("."), ["recipe.ron"]);
 }

@@ -5,7 +5,10 @@ mod edits;
 mod ends;
 mod faults;
 mod files;
+mod look;
+mod progress;
 mod store;
+mod why;
 
 #[path = "../support/workshop.rs"]
 mod workshop;

@@ -146,6 +146,7 @@ fn short(event: &Event) -> Option<String> {
         Event::MapUpToDate { path, .. } => format!("up to date {}", name(path)),
         Event::MapRestored { path, .. } => format!("restored {}", name(path)),
         Event::Warning { node, message } => format!("warning of {node}: {message}"),
+        Event::MapStale { path, .. } => format!("stale {}", name(path)),
         Event::StoreFailed { reason } => format!("store failed: {reason}"),
         Event::Cancelled => "cancelled".to_owned(),
         Event::Progress { .. } | Event::OutputDone { .. } => return None,

@@ -84,7 +84,10 @@ impl<'w> Library<'w> {
     fn compounds(&self) -> BTreeSet<String> {
         let listed = |folder| self.world.list(folder).unwrap_or_default();
         let files = self.folders.iter().flat_map(|folder| listed(folder));
-        let names = files.filter_map(|file| Some(file.strip_suffix(".ron")?.to_owned()));
+        let names = files.filter_map(|file| {
+            let name = file.path.file_name()?.to_str()?.strip_suffix(".ron");
+            name.map(str::to_owned)
+        });
         let shipped = SHIPPED.iter().map(|(name, _)| (*name).to_owned());
         let is_new = |name: &String| is_name(name) && self.native(name).is_none();
         names.chain(shipped).filter(is_new).collect()

@@ -1,0 +1,174 @@
+//! What is heard during a run: a bar on a terminal, warnings, or events as JSON.
+
+use super::report;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::path::Path;
+use yosegi::engine::{Event, Listener};
+
+/// Steps of the bar.
+const STEPS: u64 = 1000;
+
+/// Hears the events of a run.
+pub(super) struct Listen {
+    json: bool,
+    bar: ProgressBar,
+}
+
+impl Listen {
+    /// A bar if stderr is a terminal; with `json` events on stdout instead.
+    pub(super) fn new(json: bool) -> Listen {
+        // Draws nothing where stderr is no terminal.
+        let target = if json {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr()
+        };
+        let bar = ProgressBar::with_draw_target(Some(STEPS), target);
+        let style = ProgressStyle::with_template("{prefix:16!} {bar:30} {percent:>3} %  {msg}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Listen { json, bar }
+    }
+
+    /// Takes the bar away.
+    pub(super) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn warn(&self, text: &str) {
+        self.bar
+            .suspend(|| report::note(&format!("warning: {text}")));
+    }
+
+    fn warn_of_faults(&self, channel: &str, path: &Path, not_finite: u64, clamped: u64) {
+        let path = path.display();
+        if not_finite > 0 {
+            self.warn(&format!("{not_finite} samples of {path} are not finite"));
+        }
+        if clamped > 0 {
+            self.warn(&format!(
+                "{clamped} samples of {path} were clamped; widen the range of `{channel}`, or write EXR"
+            ));
+        }
+    }
+
+    fn tell(&self, event: &Event) {
+        match event {
+            Event::Progress {
+                output, fraction, ..
+            } => {
+                self.bar.set_prefix(output.clone());
+                self.bar.set_message(progress(event));
+                self.bar.set_position((fraction * STEPS as f64) as u64);
+            }
+            // A map that was there already has the faults it was written with.
+            Event::MapWritten {
+                channel,
+                path,
+                not_finite,
+                clamped,
+                ..
+            }
+            | Event::MapUpToDate {
+                channel,
+                path,
+                not_finite,
+                clamped,
+                ..
+            }
+            | Event::MapRestored {
+                channel,
+                path,
+                not_finite,
+                clamped,
+                ..
+            } => self.warn_of_faults(channel, path, *not_finite, *clamped),
+            Event::MapStale { output, path, .. } => self.warn(&format!(
+                "{} is from an earlier run: `{output}` no longer writes it",
+                path.display()
+            )),
+            Event::StoreFailed { reason } => self.warn(&format!(
+                "the store of earlier results cannot be used: {reason}"
+            )),
+            _ => {}
+        }
+    }
+}
+
+impl Listener for Listen {
+    fn hear(&self, event: Event) {
+        if !self.json {
+            self.tell(&event);
+        } else if let Ok(text) = serde_json::to_string(&event) {
+            // Events are not the result: whoever stops listening does not stop the run.
+            report::line(&text);
+        }
+    }
+}
+
+/// What stands behind the bar: `12 of 40 tiles, 1 of 3 maps, 20 s left`.
+fn progress(event: &Event) -> String {
+    let Event::Progress {
+        done,
+        total,
+        maps_done,
+        maps_total,
+        seconds_left,
+        ..
+    } = event
+    else {
+        return String::new();
+    };
+    let left = seconds_left.map(|seconds| format!(", {} left", duration(seconds)));
+    format!(
+        "{done} of {total} tiles, {maps_done} of {maps_total} maps{}",
+        left.unwrap_or_default()
+    )
+}
+
+/// A time as exactly as an estimate deserves: `20 s`, `5 min`, `2 h 10 min`.
+fn duration(seconds: f64) -> String {
+    let minutes = (seconds / 60.0).ceil() as u64;
+    match seconds {
+        ..60.0 => format!("{} s", seconds.ceil() as u64),
+        ..3600.0 => format!("{minutes} min"),
+        _ => format!("{} h {} min", minutes / 60, minutes % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_left_is_in_words_that_fit_it() {
+        let cases = [
+            (0.0, "0 s"),
+            (0.2, "1 s"),
+            (59.5, "60 s"),
+            (61.0, "2 min"),
+            (3599.0, "60 min"),
+            (7800.0, "2 h 10 min"),
+        ];
+        for (seconds, expected) in cases {
+            assert_eq!(duration(seconds), expected);
+        }
+    }
+
+    #[test]
+    fn the_bar_says_tiles_maps_and_time_only_when_that_is_known() {
+        let event = |seconds_left| Event::Progress {
+            output: "board".to_owned(),
+            done: 12,
+            total: 40,
+            maps_done: 1,
+            maps_total: 3,
+            fraction: 0.3,
+            seconds_left,
+        };
+        assert_eq!(progress(&event(None)), "12 of 40 tiles, 1 of 3 maps");
+        assert_eq!(
+            progress(&event(Some(19.2))),
+            "12 of 40 tiles, 1 of 3 maps, 20 s left"
+        );
+    }
+}
