@@ -10,6 +10,7 @@ mod check;
 mod composite;
 mod described;
 mod domains;
+pub mod edit;
 mod lexer;
 mod links;
 mod literal;
