@@ -112,7 +112,7 @@ fn a_million_of_anything_is_refused_soon() {
         (many("r#\"a\n"), Code::Unclosed),
         (many("(\n"), Code::NestedTooDeep),
         (format!("({{{}", many("\"a\": b(\n")), Code::Unclosed),
-        (format!("({{{}", many("\"a\": b())")), Code::Syntax),
+        (format!("({{{}", many("\"a\": b())")), Code::Unclosed),
         (format!("({{{}", many("\"a\": b()]\n")), Code::Syntax),
         (many(")"), Code::Syntax),
         (many(";"), Code::Syntax),

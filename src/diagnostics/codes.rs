@@ -156,6 +156,9 @@ codes! {
     PathOutside, "path-outside",
         "Files named by a recipe lie in its folder or below, and are written the same on every \
          system: no leading slash, no `..`, no backslash, no colon.";
+    InvalidEdit, "invalid-edit",
+        "An edit of a recipe's text cannot be made: what is to be removed is not written, or what is to be \
+         deleted is still used. The text stays as it is.";
     UnusedNode, "unused-node",
         "No output depends on the node, so it is never evaluated. This is a warning.";
     UnusedParameter, "unused-parameter",

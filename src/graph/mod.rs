@@ -12,6 +12,7 @@ mod composite;
 mod compound;
 mod described;
 mod domains;
+pub mod edit;
 mod lexer;
 mod links;
 mod literal;
