@@ -5,6 +5,7 @@ use super::options::{self, SizeArguments, StoreArguments};
 use super::{Exit, RecipeArguments, Recipes, report};
 use std::path::Path;
 use yosegi::engine::{Cancel, Engine, Options, Render};
+use yosegi::graph::Graph;
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
@@ -53,13 +54,27 @@ fn check(arguments: &Arguments, engine: &Engine, path: &Path) -> Exit {
     }
     if !json {
         report::line(&format!(
-            "{}: {}, {}, nothing wrong",
+            "{}: {}, nothing wrong",
             path.display(),
-            count(graph.by_name.len(), "node"),
-            count(graph.outputs.len(), "output")
+            summary(&graph)
         ));
     }
     Exit::Done
+}
+
+/// What the recipe or the compound has, in numbers.
+fn summary(graph: &Graph) -> String {
+    let nodes = |inputs| count(graph.by_name.len() - inputs, "node");
+    match graph.interface {
+        None => format!("{}, {}", nodes(0), count(graph.outputs.len(), "output")),
+        // One node stands for the inputs.
+        Some(kind) => format!(
+            "a compound with {}, {}, {}",
+            count(kind.inputs.len(), "input"),
+            nodes(1),
+            count(kind.outputs.len(), "output")
+        ),
+    }
 }
 
 /// A number of things, in words that fit it.

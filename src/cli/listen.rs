@@ -86,6 +86,9 @@ impl Listen {
                 "{} is from an earlier run: `{output}` no longer writes it",
                 path.display()
             )),
+            Event::Warning { node, message } => {
+                self.warn(&format!("node `{node}`: {message}"));
+            }
             Event::StoreFailed { reason } => self.warn(&format!(
                 "the store of earlier results cannot be used: {reason}"
             )),

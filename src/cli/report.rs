@@ -73,11 +73,6 @@ pub(super) fn problem(text: &str) {
     note(&format!("error: {text}"));
 }
 
-/// A warning that a node gives while it is built.
-pub(super) fn warning_of(node: &str, message: &str) -> String {
-    format!("warning: node `{node}`: {message}")
-}
-
 /// Prints a line to stderr.
 pub(super) fn note(text: &str) {
     // Nobody is left to tell that stderr is closed.

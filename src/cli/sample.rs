@@ -1,10 +1,11 @@
 //! `yosegi sample`: values of a node's field at points from a CSV file.
 
+use super::listen::Listen;
 use super::options::EngineArguments;
 use super::{Exit, RecipeArguments, report};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use yosegi::engine::{Engine, Event, Options, SampledField};
+use yosegi::engine::{Engine, Options, SampledField};
 use yosegi::node::common_domain;
 use yosegi::value::Domain;
 use yosegi::world::Disk;
@@ -46,11 +47,9 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
             return Exit::Wrong;
         }
     };
-    let fields = match engine.fields(&graph, &arguments.node, &|event: Event| {
-        if let Event::Warning { node, message } = event {
-            eprintln!("{}", report::warning_of(&node, &message));
-        }
-    }) {
+    // The table goes to stdout, so events do not.
+    let listener = Listen::new(false);
+    let fields = match engine.fields(&graph, &arguments.node, &listener) {
         Ok(fields) => fields,
         Err(error) => return report::run_error(&error, json),
     };

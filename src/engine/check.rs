@@ -19,7 +19,7 @@ impl Engine {
 
     fn check_all(&self, request: &Render<'_>) -> Result<(), RunError> {
         let graph = request.graph;
-        if graph.is_compound {
+        if graph.interface.is_some() {
             // Its inputs have no values until a recipe uses it.
             return Ok(());
         }

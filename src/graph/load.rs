@@ -217,7 +217,7 @@ fn graph(
             .iter()
             .map(|one| Arc::clone(&one.file.source))
             .collect(),
-        is_compound: recipe.role == Role::Compound,
+        interface: definitions[0].kind,
         nodes: with_nodes(&edges, expanded.drafts)?,
     })
 }
@@ -298,7 +298,7 @@ fn report_empty(report: &mut Report) {
 
 /// The mistake of a recipe that is to be rendered and has no output.
 pub fn no_output(graph: &Graph) -> Diagnostic {
-    if graph.is_compound {
+    if graph.interface.is_some() {
         let message = "this is a compound: it is rendered where a recipe uses it";
         let mut diagnostic = Diagnostic::error(Code::NoOutput, message)
             .hint("use it by the name of its file in a recipe beside its folder `nodes`");

@@ -63,8 +63,9 @@ pub struct Graph {
     pub uses: BTreeMap<String, CompoundUse>,
     /// The files it was read from: the recipe, then the compounds it uses.
     pub files: Vec<Arc<SourceFile>>,
-    /// Whether it is a compound itself, checked with stand-ins for its inputs: it cannot be rendered.
-    pub is_compound: bool,
+    /// The kind that it is, if it is a compound: it is checked with stand-ins for its inputs, and cannot be
+    /// rendered.
+    pub interface: Option<&'static Kind>,
 }
 
 /// The use of a compound.

@@ -108,6 +108,13 @@ fn all_events() -> Vec<(Event, Value)> {
             json!({ "event": "output_done", "output": "board", "milliseconds": 2.0 }),
         ),
         (
+            Event::Warning {
+                node: text("tree"),
+                message: text("cut"),
+            },
+            json!({ "event": "warning", "node": "tree", "message": "cut" }),
+        ),
+        (
             Event::StoreFailed {
                 reason: text("full"),
             },
@@ -128,6 +135,7 @@ fn is_listed(event: &Event) -> bool {
         | Event::MapRestored { .. }
         | Event::MapStale { .. }
         | Event::OutputDone { .. }
+        | Event::Warning { .. }
         | Event::StoreFailed { .. }
         | Event::Cancelled => true,
     }
