@@ -4,7 +4,7 @@ use super::listen::Listen;
 use super::options::{self, SizeArguments, StoreArguments};
 use super::{Exit, RecipeArguments, Recipes, report};
 use std::path::Path;
-use yosegi::engine::{Cancel, Engine, Options, Render};
+use yosegi::engine::{Cancel, Engine, Render};
 use yosegi::graph::Graph;
 
 #[derive(clap::Args)]
@@ -20,13 +20,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Exit {
-    let options = Options {
-        memory: 0,
-        store: arguments.store.folder(),
-        largest_output: arguments.size.max_pixels,
-        ..Options::default()
-    };
-    let engine = match options::start(options) {
+    let engine = match options::start(options::once(&arguments.size, &arguments.store)) {
         Ok(engine) => engine,
         Err(exit) => return exit,
     };

@@ -15,6 +15,8 @@ pub(super) struct KindJson {
     outputs: Vec<OutputJson>,
     /// A whole recipe in which a node of the kind is called `example`.
     example: &'static str,
+    /// The file of a compound; `null` for what is written in Rust.
+    pub(super) file: Option<String>,
 }
 
 /// An input, or a part of a record.
@@ -73,6 +75,7 @@ impl From<&Kind> for KindJson {
             inputs: kind.inputs.iter().map(InputJson::from).collect(),
             outputs: kind.outputs.iter().map(OutputJson::from).collect(),
             example: kind.example,
+            file: None,
         }
     }
 }

@@ -39,14 +39,16 @@ impl Listen {
             .suspend(|| report::note(&format!("warning: {text}")));
     }
 
-    fn warn_of_faults(&self, channel: &str, path: &Path, not_finite: u64, clamped: u64) {
-        let path = path.display();
-        if not_finite > 0 {
-            self.warn(&format!("{not_finite} samples of {path} are not finite"));
+    fn warn_of_faults(&self, faults: &Faults<'_>) {
+        let (path, channel) = (faults.path.display(), faults.channel);
+        if faults.not_finite > 0 {
+            let count = faults.not_finite;
+            self.warn(&format!("{count} samples of {path} are not finite"));
         }
-        if clamped > 0 {
+        if faults.clamped > 0 {
+            let count = faults.clamped;
             self.warn(&format!(
-                "{clamped} samples of {path} were clamped; widen the range of `{channel}`, or write EXR"
+                "{count} samples of {path} were clamped; widen the range of `{channel}`, or write EXR"
             ));
         }
     }
@@ -60,28 +62,6 @@ impl Listen {
                 self.bar.set_message(progress(event));
                 self.bar.set_position((fraction * STEPS as f64) as u64);
             }
-            // A map that was there already has the faults it was written with.
-            Event::MapWritten {
-                channel,
-                path,
-                not_finite,
-                clamped,
-                ..
-            }
-            | Event::MapUpToDate {
-                channel,
-                path,
-                not_finite,
-                clamped,
-                ..
-            }
-            | Event::MapRestored {
-                channel,
-                path,
-                not_finite,
-                clamped,
-                ..
-            } => self.warn_of_faults(channel, path, *not_finite, *clamped),
             Event::MapStale { output, path, .. } => self.warn(&format!(
                 "{} is from an earlier run: `{output}` no longer writes it",
                 path.display()
@@ -92,8 +72,51 @@ impl Listen {
             Event::StoreFailed { reason } => self.warn(&format!(
                 "the store of earlier results cannot be used: {reason}"
             )),
-            _ => {}
+            _ => faults(event)
+                .iter()
+                .for_each(|faults| self.warn_of_faults(faults)),
         }
+    }
+}
+
+/// What is wrong with the samples of a map.
+struct Faults<'a> {
+    channel: &'a str,
+    path: &'a Path,
+    not_finite: u64,
+    clamped: u64,
+}
+
+/// The faults of a map that is in its place; one that was there already has those it was written with.
+fn faults(event: &Event) -> Option<Faults<'_>> {
+    match event {
+        Event::MapWritten {
+            channel,
+            path,
+            not_finite,
+            clamped,
+            ..
+        }
+        | Event::MapUpToDate {
+            channel,
+            path,
+            not_finite,
+            clamped,
+            ..
+        }
+        | Event::MapRestored {
+            channel,
+            path,
+            not_finite,
+            clamped,
+            ..
+        } => Some(Faults {
+            channel,
+            path,
+            not_finite: *not_finite,
+            clamped: *clamped,
+        }),
+        _ => None,
     }
 }
 

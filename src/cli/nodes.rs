@@ -2,10 +2,13 @@
 
 use super::kind_json::KindJson;
 use super::{Exit, report};
+use std::path::{Path, PathBuf};
 use yosegi::diagnostics::nearest;
+use yosegi::graph::compounds;
 use yosegi::node::{Input, Kind, Output, Presence, Varies};
-use yosegi::nodes::{KINDS, kind};
+use yosegi::nodes::KINDS;
 use yosegi::value::Type;
+use yosegi::world::Disk;
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
@@ -17,17 +20,18 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Exit {
+    let all = all();
     match &arguments.kind {
         None if arguments.json => {
-            let kinds: Vec<KindJson> = KINDS.iter().map(|kind| KindJson::from(*kind)).collect();
+            let kinds: Vec<KindJson> = all.iter().map(Listed::json).collect();
             report::json(&kinds);
         }
-        None => list(),
-        Some(name) => match kind(name) {
-            Some(kind) if arguments.json => report::json(&KindJson::from(kind)),
-            Some(kind) => report::line(&describe(kind)),
+        None => list(&all),
+        Some(name) => match all.iter().find(|one| one.kind.name == name) {
+            Some(one) if arguments.json => report::json(&one.json()),
+            Some(one) => report::line(&one.describe()),
             None => {
-                let hint = hint(&near(name));
+                let hint = hint(&near(name, &all));
                 report::problem(&format!("there is no kind `{name}`; {hint}"));
                 return Exit::Wrong;
             }
@@ -36,9 +40,26 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     Exit::Done
 }
 
+/// A kind, and the file of a compound.
+struct Listed {
+    kind: &'static Kind,
+    file: Option<PathBuf>,
+}
+
+/// The kinds that a recipe in this folder can use.
+fn all() -> Vec<Listed> {
+    let native = KINDS.iter().map(|kind| Listed { kind, file: None });
+    let compounds = compounds(&Disk, Path::new("")).into_iter();
+    let compounds = compounds.map(|compound| Listed {
+        kind: compound.kind,
+        file: Some(compound.path),
+    });
+    native.chain(compounds).collect()
+}
+
 /// The kinds that may have been meant: by the whole name, or else by one of its words.
-fn near(wrong: &str) -> Vec<String> {
-    let names = || KINDS.iter().map(|kind| kind.name);
+fn near(wrong: &str, all: &[Listed]) -> Vec<String> {
+    let names = || all.iter().map(|one| one.kind.name);
     let whole = nearest(wrong, names());
     if !whole.is_empty() {
         return whole;
@@ -61,18 +82,36 @@ fn hint(near: &[String]) -> String {
     }
 }
 
-fn list() {
-    let width = KINDS.iter().map(|kind| kind.name.len()).max().unwrap_or(0);
-    for kind in KINDS {
+fn list(all: &[Listed]) {
+    let width = all.iter().map(|one| one.kind.name.len()).max().unwrap_or(0);
+    let mut is_compound = false;
+    for Listed { kind, file } in all {
+        if file.is_some() && !is_compound {
+            is_compound = true;
+            report::line("\nCompounds");
+        }
         report::line(&format!("{:width$}  {}", kind.name, kind.about));
     }
 }
 
-fn describe(kind: &Kind) -> String {
-    let mut text = format!(
-        "{} (version {})\n{}\n\nInputs\n",
-        kind.name, kind.version, kind.about
-    );
+impl Listed {
+    fn json(&self) -> KindJson {
+        let mut json = KindJson::from(self.kind);
+        json.file = self.file.as_ref().map(|file| file.display().to_string());
+        json
+    }
+
+    fn describe(&self) -> String {
+        describe(self.kind, self.file.as_deref())
+    }
+}
+
+fn describe(kind: &Kind, file: Option<&Path>) -> String {
+    let mut text = format!("{} (version {})\n{}\n", kind.name, kind.version, kind.about);
+    if let Some(file) = file {
+        text += &format!("A compound: {}\n", file.display());
+    }
+    text += "\nInputs\n";
     kind.inputs
         .iter()
         .for_each(|input| describe_input(&mut text, input, 2));
@@ -85,7 +124,12 @@ fn describe(kind: &Kind) -> String {
             output.about
         );
     }
-    text += &format!("\nSource\n  {}\n\nExample\n", kind.source);
+    if !kind.source.is_empty() {
+        text += &format!("\nSource\n  {}\n", kind.source);
+    }
+    if !kind.example.is_empty() {
+        text += "\nExample\n";
+    }
     for line in kind.example.lines() {
         text += &format!("  {line}\n");
     }

@@ -101,6 +101,17 @@ impl StoreArguments {
     }
 }
 
+/// How an engine works for one call.
+pub(super) fn once(size: &SizeArguments, store: &StoreArguments) -> Options {
+    Options {
+        // One run has no use for columns of another: each output has samples of its own.
+        memory: 0,
+        store: store.folder(),
+        largest_output: size.max_pixels,
+        ..Options::default()
+    }
+}
+
 /// Starts an engine; says what keeps it from starting.
 ///
 /// # Errors

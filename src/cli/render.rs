@@ -107,10 +107,6 @@ fn engine_options(arguments: &Arguments) -> Result<Options, String> {
         threads: arguments.engine.threads.map(usize::from),
         tile: arguments.tile,
         level: arguments.engine.level()?,
-        // One run has no use for columns of another: each output has samples of its own.
-        memory: 0,
-        store: arguments.store.folder(),
-        largest_output: arguments.size.max_pixels,
-        ..Options::default()
+        ..options::once(&arguments.size, &arguments.store)
     })
 }

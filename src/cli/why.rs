@@ -4,7 +4,7 @@ use super::listen::Listen;
 use super::options::{self, SizeArguments, StoreArguments};
 use super::{Exit, RecipeArguments, report};
 use std::path::PathBuf;
-use yosegi::engine::{Cancel, Explained, Options, Render, Why};
+use yosegi::engine::{Cancel, Explained, Render, Why};
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
@@ -31,13 +31,7 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
         Ok(graph) => graph,
         Err(exit) => return exit,
     };
-    let options = Options {
-        memory: 0,
-        store: arguments.store.folder(),
-        largest_output: arguments.size.max_pixels,
-        ..Options::default()
-    };
-    let engine = match options::start(options) {
+    let engine = match options::start(options::once(&arguments.size, &arguments.store)) {
         Ok(engine) => engine,
         Err(exit) => return exit,
     };

@@ -130,9 +130,10 @@ impl Output<'_> {
     }
 
     /// Names the files that the output has left behind: they are not among the `written`.
-    pub(super) fn tell_stale(&self, written: &[&str]) {
+    pub(super) fn tell_stale(&self, written: &[(NodeIndex, String)]) {
         let world = &*self.engine.world;
-        for (channel, path) in files::stale(world, &self.request.folder, self.name(), written) {
+        let written: Vec<&str> = written.iter().map(|(_, name)| name.as_str()).collect();
+        for (channel, path) in files::stale(world, &self.request.folder, self.name(), &written) {
             self.request.listener.hear(Event::MapStale {
                 output: self.name().to_owned(),
                 channel,

@@ -91,7 +91,6 @@ impl Engine {
         for (output, known) in outputs.iter().zip(&known) {
             output.expect(known.as_deref(), &built, &meter)?;
         }
-        let names: Vec<&str> = names.iter().map(|(_, name)| name.as_str()).collect();
         let mut rendered = vec![];
         for (output, known) in outputs.iter().zip(&known) {
             let maps = output.make(known.as_deref(), &built, &meter)?;
@@ -102,12 +101,17 @@ impl Engine {
             rendered.extend(maps);
         }
         built.complete()?;
-        if let Err(error) = self.record_run(&plan, request.pixels) {
+        self.remember_run(request, &plan);
+        Ok(rendered)
+    }
+
+    /// Records what has run, for [`Engine::why`].
+    fn remember_run(&self, request: &Render<'_>, plan: &Plan<'_>) {
+        if let Err(error) = self.record_run(plan, request.pixels) {
             request.listener.hear(Event::StoreFailed {
                 reason: error.to_string(),
             });
         }
-        Ok(rendered)
     }
 
     /// Outputs of a run.
