@@ -65,10 +65,12 @@ impl Buckets {
 }
 
 /// Linear values to 8-bit codes.
+///
+/// No bucket holds more than one limit. So the entry of a bucket is the code of its start, above the 16 bits
+/// that a float has within the bucket, less the place of the limit: adding those bits carries into the code
+/// from the limit on.
 pub(super) struct Srgb8 {
-    limits: [f32; 257],
-    /// The code of the start of each bucket; no bucket holds more than one limit.
-    guesses: [u8; Srgb8::BUCKETS.count()],
+    entries: [u32; Srgb8::BUCKETS.count()],
 }
 
 impl Srgb8 {
@@ -76,6 +78,8 @@ impl Srgb8 {
         octaves: 13,
         bits: 7,
     };
+    /// Bits of a float within a bucket.
+    const REST: u32 = 23 - Srgb8::BUCKETS.bits;
 
     /// The table.
     pub(super) fn get() -> &'static Srgb8 {
@@ -84,20 +88,25 @@ impl Srgb8 {
     }
 
     fn new() -> Srgb8 {
-        let limits: [f32; 257] = limits(255).try_into().expect("255 limits and two ends");
-        let guesses = std::array::from_fn(|bucket| {
+        let limits = limits(255);
+        let entry = |bucket| {
             let start = Srgb8::BUCKETS.start(bucket);
-            (limits.partition_point(|limit| *limit <= start) - 1) as u8
-        });
-        Srgb8 { limits, guesses }
+            let code = limits.partition_point(|limit| *limit <= start) - 1;
+            let place = limits[code + 1].to_bits() - start.to_bits();
+            let size = 1 << Srgb8::REST;
+            ((code as u32) << Srgb8::REST) + size - place.min(size)
+        };
+        Srgb8 {
+            entries: std::array::from_fn(entry),
+        }
     }
 
     /// The code nearest to the sRGB encoding of `linear`; what lies outside 0 to 1 is clamped, NaN is 0.
     #[inline]
     pub(super) fn code(&self, linear: f32) -> u8 {
         let linear = Srgb8::BUCKETS.clamp(linear);
-        let guess = self.guesses[Srgb8::BUCKETS.of(linear)];
-        guess + u8::from(linear >= self.limits[usize::from(guess) + 1])
+        let rest = linear.to_bits() & ((1 << Srgb8::REST) - 1);
+        ((self.entries[Srgb8::BUCKETS.of(linear)] + rest) >> Srgb8::REST) as u8
     }
 }
 
@@ -160,7 +169,7 @@ mod tests {
     #[test]
     fn every_limit_of_8_bits_is_the_first_value_of_its_code() {
         for code in 1..=255u8 {
-            let first = Srgb8::get().limits[usize::from(code)];
+            let first = limit(code.into(), 255.0);
             assert_eq!(nearest(first, 255.0), u32::from(code));
             assert_eq!(nearest(first.next_down(), 255.0), u32::from(code) - 1);
             assert_eq!(Srgb8::get().code(first), code);
