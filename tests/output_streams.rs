@@ -38,7 +38,7 @@ fn grouping_rows_differently_does_not_change_the_file() {
     for (kind, size) in [
         (MapKind::Colour, [17, 67]),
         (MapKind::Number, [333, 32]),
-        (MapKind::Normal, [1700, 70]),
+        (MapKind::Normal, [1700, 40]),
     ] {
         for format in FORMATS {
             let request = with_size(size, kind, format);

@@ -65,10 +65,11 @@ impl Buckets {
 }
 
 /// Linear values to 8-bit codes.
+///
+/// No bucket holds more than one limit. So the entry of a bucket is the code of its start, above the 16 bits
+/// that a float has within the bucket, less the place of the limit: adding those bits carries into the code
+/// from the limit on.
 pub(super) struct Srgb8 {
-    /// For each bucket, of `2^16` floats, a number to which the distance from its start is added: the high
-    /// half of the sum is the code. A limit inside the bucket is where the low half overflows; no bucket
-    /// holds more than one.
     entries: [u32; Srgb8::BUCKETS.count()],
 }
 
@@ -77,6 +78,8 @@ impl Srgb8 {
         octaves: 13,
         bits: 7,
     };
+    /// Bits of a float within a bucket.
+    const REST: u32 = 23 - Srgb8::BUCKETS.bits;
 
     /// The table.
     pub(super) fn get() -> &'static Srgb8 {
@@ -89,8 +92,9 @@ impl Srgb8 {
         let entry = |bucket| {
             let start = Srgb8::BUCKETS.start(bucket);
             let code = limits.partition_point(|limit| *limit <= start) - 1;
-            let until_limit = limits[code + 1].to_bits().saturating_sub(start.to_bits());
-            ((code as u32) << 16) + (1u32 << 16).saturating_sub(until_limit)
+            let place = limits[code + 1].to_bits() - start.to_bits();
+            let size = 1 << Srgb8::REST;
+            ((code as u32) << Srgb8::REST) + size - place.min(size)
         };
         Srgb8 {
             entries: std::array::from_fn(entry),
@@ -101,8 +105,8 @@ impl Srgb8 {
     #[inline]
     pub(super) fn code(&self, linear: f32) -> u8 {
         let linear = Srgb8::BUCKETS.clamp(linear);
-        let along = linear.to_bits() & 0xffff;
-        ((self.entries[Srgb8::BUCKETS.of(linear)] + along) >> 16) as u8
+        let rest = linear.to_bits() & ((1 << Srgb8::REST) - 1);
+        ((self.entries[Srgb8::BUCKETS.of(linear)] + rest) >> Srgb8::REST) as u8
     }
 }
 
@@ -164,9 +168,8 @@ mod tests {
 
     #[test]
     fn every_limit_of_8_bits_is_the_first_value_of_its_code() {
-        let limits = limits(255);
         for code in 1..=255u8 {
-            let first = limits[usize::from(code)];
+            let first = limit(code.into(), 255.0);
             assert_eq!(nearest(first, 255.0), u32::from(code));
             assert_eq!(nearest(first.next_down(), 255.0), u32::from(code) - 1);
             assert_eq!(Srgb8::get().code(first), code);
