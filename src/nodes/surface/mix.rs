@@ -24,7 +24,10 @@ pub static KIND: Kind = Kind {
             .range(0.0, 1.0),
     ],
     outputs: &[Output::field("colour", Type::Colour, "The mixed colour.")],
-    example: r##"(nodes: { "example": mix(a: "#e8c79a", b: "#5b3a1e", amount: 0.25) })"##,
+    example: r##"(nodes: {
+        "grain": solid_noise(size: (2, 2, 60)),
+        "example": mix(a: "#e8c79a", b: "#5b3a1e", amount: "= 0.25 + 0.2 * grain.value"),
+    })"##,
     build,
 };
 
