@@ -216,12 +216,7 @@ fn disc_has_no_moire_at_64_pixels() {
 
 #[test]
 fn forms_of_noise_keep_the_contract() {
-    for (output, side, contrast) in [
-        ("fbm", 32, 10.0),
-        ("ridged", 64, 10.0),
-        ("billow", 64, 10.0),
-        ("bent", 64, 4.0),
-    ] {
-        keeps_the_contract("noise_forms", output, [240.0, 240.0], side, contrast);
+    for (output, side) in [("fbm", 32), ("ridged", 64), ("billow", 64)] {
+        keeps_the_contract("noise_forms", output, [240.0, 240.0], side, 10.0);
     }
 }
