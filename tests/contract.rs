@@ -213,3 +213,10 @@ fn disc_of_the_spruce_log_keeps_the_contract() {
 fn disc_has_no_moire_at_64_pixels() {
     keeps_the_contract("spruce_log_board", "disc", [260.0, 260.0], 64, 10.0);
 }
+
+#[test]
+fn forms_of_noise_keep_the_contract() {
+    for (output, side) in [("fbm", 32), ("ridged", 64), ("billow", 64)] {
+        keeps_the_contract("noise_forms", output, [240.0, 240.0], side, 10.0);
+    }
+}

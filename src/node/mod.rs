@@ -63,6 +63,11 @@ impl Kind {
         first.is_some_and(|output| output.value_type == Type::Maps)
     }
 
+    /// Whether it repeats on request: such kinds have an input `period`, a length or one for each axis.
+    pub fn repeats(&self) -> bool {
+        self.input("period").is_some()
+    }
+
     /// Whether its outputs are structures: built once, cached and stored.
     pub fn is_structure(&self) -> bool {
         self.outputs

@@ -1,6 +1,8 @@
 //! Laws that hold for every kind of node, enumerated from the table of kinds.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+mod filtering;
+mod repeats;
 mod table;
 
 #[path = "../support/levels.rs"]

@@ -70,7 +70,8 @@ pub static KIND: Kind = Kind {
     ],
     outputs: &[Output::field("piece", Type::Material, "The flat piece.").on(Domain::Plane)],
     example: r##"(nodes: {
-        "wood": material(base_color: "#c8a06e"),
+        "grain": solid_noise(size: (2, 2, 60)),
+        "wood": material(base_color: "#c8a06e", height: "= 0.05 * grain.value"),
         "example": slice_cut(of: "wood", cut: plain_sawn, origin: (0, 0, 500), offset: 40, size: (140, 900)),
     })"##,
     build,

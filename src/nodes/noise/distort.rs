@@ -34,7 +34,8 @@ pub static KIND: Kind = Kind {
     ],
     outputs: &[Output::field("material", Type::Material, "The bent material.").on(Domain::Solid)],
     example: r##"(nodes: {
-        "wood": material(base_color: "#c8a06e"),
+        "grain": solid_noise(size: (2, 2, 60)),
+        "wood": material(base_color: "#c8a06e", height: "= 0.05 * grain.value"),
         "waves": solid_noise(size: (60, 60, 400)),
         "example": distort(of: "wood", by: "waves.vector", amount: (2, 2, 0)),
     })"##,

@@ -43,7 +43,7 @@ impl Form {
     }
 
     /// When pixels are divided for an octave with a share of the sum: if the error that it would leave is
-    /// more than 0.75 % of the range, so that what is left of it does not show.
+    /// more than 0.5 % of the range, so that what is left of it does not show.
     pub(super) fn steps(self, strength: f64) -> Steps {
         // The error of one point per pixel, and the range.
         let (error, range) = match self {
@@ -52,7 +52,7 @@ impl Form {
             Form::Billow => (0.053, 1.0),
         };
         match self {
-            _ if strength * error <= 0.0075 * range => Steps::NONE,
+            _ if strength * error <= 0.005 * range => Steps::NONE,
             Form::Soft => Steps([0.4f32.powi(2), 1.4f32.powi(2)]),
             // What is folded has features half as large.
             Form::Ridged | Form::Billow => Steps([0.25f32.powi(2), 0.7f32.powi(2)]),

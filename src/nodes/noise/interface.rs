@@ -88,6 +88,7 @@ pub(super) fn build(
     inputs: &Inputs<'_>,
     build: &Build<'_>,
 ) -> Result<Vec<Value>, Failure> {
+    check_fineness(inputs)?;
     let cells = period::cells(inputs)?;
     let mut random = Random::new(build.seed, kind, inputs.whole("seed"));
     let mut columns = |count| {
@@ -95,6 +96,22 @@ pub(super) fn build(
         Value::Field(build.kernel(kernel, vec![Field::position(domain)]))
     };
     Ok(vec![columns(1), columns(3)])
+}
+
+/// Positions are not exact enough for octaves that are still finer.
+const FINEST: f64 = 65_536.0;
+
+fn check_fineness(inputs: &Inputs<'_>) -> Result<(), Failure> {
+    let (octaves, lacunarity) = (inputs.whole("octaves"), inputs.number("lacunarity"));
+    let finest = lacunarity.powi(octaves as i32 - 1);
+    if finest <= FINEST {
+        return Ok(());
+    }
+    Err(Failure::of_input(
+        "octaves",
+        format!("the last octave is {finest:.0} times finer than the first, expected at most {FINEST} times"),
+    )
+    .with_hint("take fewer octaves, or a smaller lacunarity"))
 }
 
 /// The kernel with 1 or 3 columns that the inputs describe, given the first octave's cells in a period.

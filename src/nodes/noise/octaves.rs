@@ -77,6 +77,39 @@ impl NoiseKernel {
         sums
     }
 
+    /// The samples from `start` on, clamped to `border`.
+    #[inline(always)]
+    fn pixels<S: Simd>(
+        &self,
+        simd: S,
+        position: [InputColumn<'_>; 3],
+        start: usize,
+        border: f32,
+    ) -> Pixels<S> {
+        let range = start..start + S::f32s::LEN;
+        let zero = S::f32s::splat(simd, 0.0);
+        let mut pixels = Pixels {
+            centre: [zero; 3],
+            sides: [[zero; 3]; 2],
+            squares: [zero; 2],
+        };
+        for (axis, column) in position.iter().enumerate() {
+            let (scale, period) = (self.scale[axis], self.period[axis]);
+            let mut at = S::f32s::from_slice(simd, &column.values[range.clone()]);
+            if period > 0.0 {
+                // Before it is scaled, so that a period later the same bits come.
+                at -= (at / period).floor() * period;
+            }
+            pixels.centre[axis] = (at * scale).max_precise(-border).min_precise(border);
+            for (index, spread) in column.spread.iter().enumerate() {
+                let side = S::f32s::from_slice(simd, &spread[range.clone()]) * scale;
+                pixels.sides[index][axis] = side;
+                pixels.squares[index] += side * side;
+            }
+        }
+        pixels
+    }
+
     /// The coordinate of the first octave, in cells, beyond which noise is that of the border.
     fn border(&self) -> f32 {
         let finest = self.octaves.last().map_or(1.0, |octave| octave.fineness);
@@ -217,30 +250,11 @@ fn evaluate_block<S: Simd, const N: usize>(
     outputs: &mut [Vec<f32>],
 ) {
     let border = kernel.border();
-    let zero = S::f32s::splat(simd, 0.0);
     for start in (0..position[0].values.len()).step_by(S::f32s::LEN) {
-        let range = start..start + S::f32s::LEN;
-        let mut pixels = Pixels::<S> {
-            centre: [zero; 3],
-            sides: [[zero; 3]; 2],
-            squares: [zero; 2],
-        };
-        for axis in 0..3 {
-            let (scale, period) = (kernel.scale[axis], kernel.period[axis]);
-            let mut at = S::f32s::from_slice(simd, &position[axis].values[range.clone()]);
-            if period > 0.0 {
-                at -= (at / period).floor() * period;
-            }
-            pixels.centre[axis] = (at * scale).max_precise(-border).min_precise(border);
-            for (index, spread) in position[axis].spread.iter().enumerate() {
-                let side = S::f32s::from_slice(simd, &spread[range.clone()]) * scale;
-                pixels.sides[index][axis] = side;
-                pixels.squares[index] += side * side;
-            }
-        }
+        let pixels = kernel.pixels::<S>(simd, position, start, border);
         let sums = kernel.sums::<S, N>(simd, pixels);
         for (sum, output) in sums.into_iter().zip(outputs.iter_mut()) {
-            sum.store_slice(&mut output[range.clone()]);
+            sum.store_slice(&mut output[start..start + S::f32s::LEN]);
         }
     }
 }

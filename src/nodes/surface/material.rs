@@ -69,7 +69,10 @@ pub static KIND: Kind = Kind {
         Type::Material,
         "The material, uncut or flat.",
     )],
-    example: r##"(nodes: { "example": material(base_color: "#c8a06e", roughness: 0.6) })"##,
+    example: r##"(nodes: {
+        "grain": solid_noise(size: (2, 2, 60)),
+        "example": material(base_color: "#c8a06e", height: "= 0.05 * grain.value", roughness: 0.6),
+    })"##,
     build,
 };
 

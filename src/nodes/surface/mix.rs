@@ -33,7 +33,10 @@ pub static KIND: Kind = Kind {
         .default("normal"),
     ],
     outputs: &[Output::field("colour", Type::Colour, "The mixed colour.")],
-    example: r##"(nodes: { "example": mix(a: "#e8c79a", b: "#5b3a1e", amount: 0.25) })"##,
+    example: r##"(nodes: {
+        "grain": solid_noise(size: (2, 2, 60)),
+        "example": mix(a: "#e8c79a", b: "#5b3a1e", amount: "= 0.25 + 0.2 * grain.value"),
+    })"##,
     build,
 };
 

@@ -49,8 +49,10 @@ pub static KIND: Kind = Kind {
         ),
     ],
     example: r##"(nodes: {
+    "tree": skeleton(trunk: [(0, 0, 0), (0, 0, 2400)]),
+    "time": growth_field(skeleton: "tree", elongation: 420, thickening: 2.4),
     "bar": colour_pattern(stops: [(at: 0, colour: "#e8c79a"), (at: 1, colour: "#9c6b3f")]),
-    "example": pattern_lookup(time: 2.25, pattern: "bar"),
+    "example": pattern_lookup(time: "time.time", pattern: "bar"),
 })"##,
     build,
 };

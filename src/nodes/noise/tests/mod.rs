@@ -177,6 +177,18 @@ fn coordinates_beyond_all_cells_give_the_border() {
     assert!(value(f64::NAN).iter().all(|value| value.is_finite()));
 }
 
+#[test]
+fn octaves_too_fine_for_positions_are_refused() {
+    let noise = |octaves| Noise {
+        octaves,
+        lacunarity: 8.0,
+        ..PLAIN
+    };
+    assert!(noise(6).try_build().is_ok());
+    let failure = noise(7).try_build().expect_err("8^6 is more than 65536");
+    assert_eq!(failure.input, Some("octaves"));
+}
+
 /// Mean and variance.
 fn statistics(values: &[f32]) -> [f64; 2] {
     let mean = |of: &dyn Fn(f64) -> f64| {
