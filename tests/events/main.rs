@@ -6,6 +6,7 @@ mod ends;
 mod faults;
 mod files;
 mod store;
+mod warnings;
 
 #[path = "../support/workshop.rs"]
 mod workshop;
