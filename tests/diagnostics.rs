@@ -15,14 +15,10 @@ use yosegi::world::Disk;
 const FOLDER: &str = "tests/diagnostics";
 
 /// Codes that no file of reasonable size in this folder can cause, and the tests that cause them.
-const ELSEWHERE: [(Code, &str); 7] = [
+const ELSEWHERE: [(Code, &str); 6] = [
     (Code::InvalidEdit, "tests/edit.rs"),
     (Code::FileNotRead, "tests/diagnostics_limits.rs"),
     (Code::TooLarge, "tests/diagnostics_limits.rs"),
-    (
-        Code::MixedDomains,
-        "tests/diagnostics_limits.rs: no kind gives a plane field yet",
-    ),
     (Code::NodeFailed, "tests/events/ends.rs"),
     (Code::TooMuch, "tests/events/ends.rs"),
     (Code::OutputNotWritten, "tests/events/faults.rs"),

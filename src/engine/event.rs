@@ -17,7 +17,7 @@ pub enum From {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
-    /// A structure was built.
+    /// A structure was built, or the file of a node was decoded.
     StructureBuilt {
         /// The node.
         node: String,

@@ -8,6 +8,7 @@ mod files;
 mod look;
 mod progress;
 mod store;
+mod warnings;
 mod why;
 
 #[path = "../support/workshop.rs"]

@@ -90,6 +90,7 @@ fn mixing_is_exact_at_both_ends_and_clamps() {
         ("a", Value::Colour(a)),
         ("b", Value::Colour(b)),
         ("amount", amount),
+        ("mode", Value::Choice("normal")),
     ];
     let Value::Field(mixed) = build("mix", &inputs).unwrap().remove(0) else {
         panic!("no field")

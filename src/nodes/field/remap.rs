@@ -64,7 +64,7 @@ pub static KIND: Kind = Kind {
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let ([first, last], to) = (inputs.pair("from"), inputs.pair("to"));
-    if !((last - first).abs() >= 1e-6 * first.abs().max(last.abs()).max(1e-6)) {
+    if (last - first).abs() < 1e-6 * first.abs().max(last.abs()).max(1e-6) {
         let message = format!("the range is empty: {first} to {last}");
         return Err(Failure::of_input("from", message)
             .with_hint("use `threshold` for a step from one value to another"));

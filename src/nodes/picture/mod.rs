@@ -125,18 +125,19 @@ pub(super) fn decode(bytes: &[u8], format: Format) -> Result<DynamicImage, Failu
         return Err(broken("the file ends before the picture does"));
     }
     guarded(|| {
-        let mut reader = reader(bytes, format);
-        let mut limits = Limits::default();
-        limits.max_image_width = Some(MAX_SIDE);
-        limits.max_image_height = Some(MAX_SIDE);
-        limits.max_alloc = Some(MAX_MEBIBYTES << 20);
-        reader.limits(limits);
-        reader.decode().map_err(failure)
+        let decoded = reader(bytes, format).decode();
+        decoded.map_err(failure)
     })
 }
 
 fn reader(bytes: &[u8], format: Format) -> ImageReader<Cursor<&[u8]>> {
-    ImageReader::with_format(Cursor::new(bytes), format.decoder())
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    limits.max_alloc = Some(MAX_MEBIBYTES << 20);
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format.decoder());
+    reader.limits(limits);
+    reader
 }
 
 fn failure(error: ImageError) -> Failure {
