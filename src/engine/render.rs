@@ -7,7 +7,7 @@ use super::plan::Plan;
 use super::store::Store;
 use super::{Cancel, Engine, FlatPiece, RESULTS, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
-use crate::field::Target;
+use crate::field::{Field, Program, Target};
 use crate::graph::{Graph, no_output};
 use crate::key::{Key, KeyHasher};
 use crate::output::{self, Encoder, Faults, MapRequest};
@@ -229,6 +229,9 @@ impl Output<'_> {
         target: &FlatPiece,
         missing: &[&WantedMap],
     ) -> Result<Vec<Faults>, RunError> {
+        let field = |map: &&WantedMap| self.field(maps, &map.channel).0;
+        let program = Program::compile(&missing.iter().map(field).collect::<Vec<Field>>());
+        self.check_program(&program)?;
         let sheets: io::Result<Vec<Sheet>> = missing
             .iter()
             .map(|map| self.sheet(maps, target, map))
@@ -236,6 +239,7 @@ impl Output<'_> {
         let mut sheets = sheets.map_err(|error| RunError::not_written(&error))?;
         let painter = Painter {
             output: self.name(),
+            program: &program,
             target,
             options: &self.engine.options,
             context: self.engine.context(),
@@ -261,7 +265,7 @@ impl Output<'_> {
     }
 
     fn sheet(&self, maps: &Maps, target: &FlatPiece, map: &WantedMap) -> io::Result<Sheet> {
-        let (field, kind) = self.field(maps, &map.channel);
+        let (_, kind) = self.field(maps, &map.channel);
         let request = MapRequest {
             pixels: target.pixels(),
             size_mm: maps.size,
@@ -272,7 +276,6 @@ impl Output<'_> {
         };
         let range = maps.ranges.get(&map.channel).copied();
         Ok(Sheet {
-            field,
             encoder: Encoder::new(kind, maps.format, range),
             writer: output::create(&*self.engine.world, &self.path(map), &request)?,
             faults: Faults::default(),
