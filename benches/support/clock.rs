@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-/// Seconds that the calling thread is busy with `work`: of its processor where the system tells, which
-/// other programs disturb less, else of the wall clock.
+/// Seconds of processor that `work` takes, over all threads that are there before and after it, where the
+/// system tells: other programs disturb them less than the wall clock, which is taken elsewhere.
 pub(crate) fn seconds(work: &mut dyn FnMut()) -> f64 {
     let (start, busy) = (Instant::now(), busy_seconds());
     work();
@@ -13,12 +13,15 @@ pub(crate) fn seconds(work: &mut dyn FnMut()) -> f64 {
     }
 }
 
-/// Seconds that the calling thread has run so far.
+/// Seconds that the threads have run so far.
 fn busy_seconds() -> Option<f64> {
-    // The system counts up to the last time that it looked at the thread.
+    // The system counts up to the last time that it looked at a thread.
     std::thread::yield_now();
-    let times = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = times.split_whitespace().next()?.parse().ok()?;
+    let mut nanoseconds = 0.0;
+    for thread in std::fs::read_dir("/proc/self/task").ok()? {
+        let times = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        nanoseconds += times.split_whitespace().next()?.parse::<f64>().ok()?;
+    }
     Some(nanoseconds * 1e-9)
 }
 

@@ -168,8 +168,9 @@ codes! {
         "A map could not be written: the folder does not exist and cannot be made, the disk is full, or \
          the system refused. What was there before is still whole.";
     TooMuch, "too-much",
-        "The maps asked for, or the nodes inside compounds, are more than the limit on one run. The message names the limit and the \
-         switch that raises it.";
+        "The maps asked for, the programs that compute them, or the nodes inside compounds are more than a \
+         limit on one run. The message names the limit, and the switch that raises it or what would keep \
+         below it.";
     NodeFailed, "node-failed",
         "A node could not be built from its inputs although each of them is valid. Nodes that depend \
          on it are skipped; everything else is still rendered.";

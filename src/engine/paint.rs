@@ -6,16 +6,18 @@
 use super::event::{Event, Listener};
 use super::progress::Meter;
 use super::{Cancel, Options, RunError};
-use crate::field::{Field, PixelGrid, Program, RunContext, Samples, Scratch, Target, Work};
+use crate::field::{PixelGrid, Program, RunContext, Samples, Scratch, Target, Work};
 use crate::output::{Encoder, Faults, MapWriter};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// Bytes of rows in a window, at most, as long as a window has a row.
+const WINDOW_BYTES: usize = 64 << 20;
+
 /// One map on its way to a file.
 pub(super) struct Sheet {
-    pub(super) field: Field,
     pub(super) encoder: Encoder,
     pub(super) writer: Box<dyn MapWriter>,
     pub(super) faults: Faults,
@@ -24,6 +26,8 @@ pub(super) struct Sheet {
 /// What painting needs besides the sheets.
 pub(super) struct Painter<'a> {
     pub(super) output: &'a str,
+    /// Gives the columns of all sheets, in order.
+    pub(super) program: &'a Program,
     pub(super) target: &'a dyn Target,
     pub(super) options: &'a Options,
     pub(super) context: RunContext<'a>,
@@ -39,20 +43,49 @@ struct Tile {
     size: [u32; 2],
 }
 
+/// A picture divided into bands of tiles, and these into windows.
+struct Bands {
+    pixels: [u32; 2],
+    /// Width and height of a tile that is not cut off.
+    tile: [u32; 2],
+    /// Bands in a window.
+    at_once: usize,
+}
+
+impl Bands {
+    fn tiles(&self) -> usize {
+        let [across, down] = [0, 1].map(|axis| self.pixels[axis].div_ceil(self.tile[axis]));
+        across as usize * down as usize
+    }
+
+    /// Windows from top to bottom, each of bands of tiles from left to right.
+    fn windows(&self) -> impl Iterator<Item = Vec<Vec<Tile>>> {
+        let starts = (0..self.pixels[1]).step_by(self.tile[1] as usize * self.at_once);
+        starts.map(|start| {
+            let bands = (start..self.pixels[1]).step_by(self.tile[1] as usize);
+            bands.take(self.at_once).map(|y| self.band(y)).collect()
+        })
+    }
+
+    fn band(&self, y: u32) -> Vec<Tile> {
+        let [width, height] = self.pixels;
+        let tile = |x: u32| Tile {
+            corner: [x, y],
+            size: [self.tile[0].min(width - x), self.tile[1].min(height - y)],
+        };
+        (0..width)
+            .step_by(self.tile[0] as usize)
+            .map(tile)
+            .collect()
+    }
+}
+
 /// The samples of a tile: for every sheet its rows, one after the other.
 struct Painted {
     tile: Tile,
     rows: Vec<Vec<u8>>,
     faults: Vec<Faults>,
     work: BTreeMap<Arc<str>, Work>,
-}
-
-/// The number of tiles of a picture.
-pub(super) fn tile_count(pixels: [u32; 2], side: u32) -> usize {
-    pixels
-        .map(|length| length.div_ceil(side) as usize)
-        .iter()
-        .product()
 }
 
 /// Bands of tiles, each from left to right.
@@ -64,16 +97,16 @@ impl Painter<'_> {
     /// # Errors
     /// [`RunError::Cancelled`], or what the writers say.
     pub(super) fn paint(&self, sheets: &mut [Sheet]) -> Result<(), PaintError> {
-        let fields: Vec<Field> = sheets.iter().map(|sheet| sheet.field.clone()).collect();
         let encoders: Vec<Encoder> = sheets.iter().map(|sheet| sheet.encoder).collect();
-        let program = Program::compile(&fields);
         let scratches = Mutex::new(vec![]);
-        let windows = self.windows();
+        let pixel_bytes = encoders.iter().map(Encoder::pixel_bytes).sum();
+        let bands = self.bands(pixel_bytes);
+        self.meter.count().divide(bands.tiles());
         let mut tally = Tally::default();
         let mut waiting: Option<Window> = None;
-        for window in windows {
+        for window in bands.windows() {
             let (painted, written) = rayon::join(
-                || self.paint_window(&program, &encoders, window, &scratches),
+                || self.paint_window(&encoders, window, &scratches),
                 || {
                     waiting
                         .take()
@@ -89,33 +122,23 @@ impl Painter<'_> {
         Ok(())
     }
 
-    /// Windows of bands of tiles; a window keeps every thread busy.
-    fn windows(&self) -> Vec<Vec<Vec<Tile>>> {
+    /// How the picture is divided: a window keeps every thread busy.
+    fn bands(&self, pixel_bytes: usize) -> Bands {
         let [width, height] = self.target.pixels();
+        let rows = (WINDOW_BYTES / (width as usize * pixel_bytes)).max(1);
         let side = self.options.tile;
-        let band = |y: u32| {
-            let tile = |x: u32| Tile {
-                corner: [x, y],
-                size: [side.min(width - x), side.min(height - y)],
-            };
-            (0..width)
-                .step_by(side as usize)
-                .map(tile)
-                .collect::<Vec<_>>()
-        };
-        let bands: Vec<Vec<Tile>> = (0..height).step_by(side as usize).map(band).collect();
-        let wanted = 4 * rayon::current_num_threads();
-        let across = width.div_ceil(side) as usize;
-        bands
-            .chunks(wanted.div_ceil(across))
-            .map(<[_]>::to_vec)
-            .collect()
+        let tile = [side, side.min(u32::try_from(rows).unwrap_or(side))];
+        let wanted = (4 * rayon::current_num_threads()).div_ceil(width.div_ceil(side) as usize);
+        Bands {
+            pixels: [width, height],
+            tile,
+            at_once: wanted.clamp(1, (rows / tile[1] as usize).max(1)),
+        }
     }
 
     /// `None` if the run was cancelled.
     fn paint_window(
         &self,
-        program: &Program,
         encoders: &[Encoder],
         window: Vec<Vec<Tile>>,
         scratches: &Mutex<Vec<Scratch>>,
@@ -125,7 +148,7 @@ impl Painter<'_> {
                 return None;
             }
             let mut scratch = lock(scratches).pop().unwrap_or_default();
-            let painted = self.paint_tile(program, encoders, *tile, &mut scratch);
+            let painted = self.paint_tile(encoders, *tile, &mut scratch);
             lock(scratches).push(scratch);
             self.meter.tile();
             Some(painted)
@@ -136,13 +159,8 @@ impl Painter<'_> {
             .collect()
     }
 
-    fn paint_tile(
-        &self,
-        program: &Program,
-        encoders: &[Encoder],
-        tile: Tile,
-        scratch: &mut Scratch,
-    ) -> Painted {
+    fn paint_tile(&self, encoders: &[Encoder], tile: Tile, scratch: &mut Scratch) -> Painted {
+        let program = self.program;
         let margin = program.margin();
         let grid = PixelGrid::tile(tile.corner, tile.size, margin);
         let stride = grid.width;

@@ -68,18 +68,22 @@ impl Count {
         self.work += work(painted, pixels);
     }
 
-    /// Begins to paint `painted` maps in `tiles` tiles; `found` others need not be painted after all.
+    /// Begins to paint `painted` maps; `found` others need not be painted after all.
     pub(super) fn begin(
         &mut self,
         output: &str,
         [painted, found]: [usize; 2],
         pixels: [u32; 2],
-        tiles: usize,
     ) {
         self.work -= work(found, pixels);
         self.work_done += self.work_of_output;
         self.work_of_output = work(painted, pixels);
         output.clone_into(&mut self.output);
+        self.divide(1);
+    }
+
+    /// Divides what is painted into tiles.
+    pub(super) fn divide(&mut self, tiles: usize) {
         (self.tiles, self.tiles_done) = (tiles, 0);
     }
 
@@ -136,7 +140,8 @@ mod tests {
     fn tiles_in_quick_succession_are_told_ten_times_a_second() {
         let mut count = Count::default();
         count.expect(1, 1, [1000, 1000]);
-        count.begin("board", [1, 0], [1000, 1000], 10_000);
+        count.begin("board", [1, 0], [1000, 1000]);
+        count.divide(10_000);
         // A tile every millisecond: ten seconds.
         let now = |tile: u64| Duration::from_millis(tile);
         let events: Vec<Event> = (0..10_000)
@@ -157,14 +162,15 @@ mod tests {
         count.expect(1, 1, [30, 10]);
         count.finish(2);
         // One of the three maps turned out to be there.
-        count.begin("a", [2, 1], [10, 10], 4);
+        count.begin("a", [2, 1], [10, 10]);
+        count.divide(4);
         let mut fractions = vec![];
         for tile in 0..4 {
             count.tile(Duration::from_secs(tile));
             fractions.push(told(count.event(Duration::from_secs(tile))).0);
         }
         count.finish(3);
-        count.begin("b", [1, 0], [30, 10], 1);
+        count.begin("b", [1, 0], [30, 10]);
         count.tile(Duration::from_secs(5));
         let last = count.event(Duration::from_secs(5));
         assert_eq!(fractions, [0.1, 0.2, 0.3, 0.4]);

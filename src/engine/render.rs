@@ -3,12 +3,12 @@
 use super::build::Built;
 use super::event::{Event, Listener};
 use super::known::{KnownMap, KnownOutput, OutputRecord, repeat_warnings};
-use super::paint::{self, Painter, Sheet};
+use super::paint::{Painter, Sheet};
 use super::plan::Plan;
 use super::progress::Meter;
 use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
-use crate::field::Target;
+use crate::field::{Field, Program, Target};
 use crate::graph::{Graph, no_output};
 use crate::key::Key;
 use crate::output::{self, Encoder, Faults, MapRequest};
@@ -233,9 +233,8 @@ impl Output<'_> {
         let wanted = self.wanted_maps(maps, &target);
         let is_there = |map: &WantedMap| told.contains(&&*map.channel) || self.found(map);
         let missing: Vec<&WantedMap> = wanted.iter().filter(|map| !is_there(map)).collect();
-        let tiles = paint::tile_count(pixels, self.engine.options.tile);
         let share = [missing.len(), wanted.len() - missing.len()];
-        meter.count().begin(self.name(), share, pixels, tiles);
+        meter.count().begin(self.name(), share, pixels);
         let faults = if missing.is_empty() {
             vec![]
         } else {
@@ -263,6 +262,9 @@ impl Output<'_> {
         missing: &[&WantedMap],
         meter: &Meter<'_>,
     ) -> Result<Vec<Faults>, RunError> {
+        let field = |map: &&WantedMap| self.field(maps, &map.channel).0;
+        let program = Program::compile(&missing.iter().map(field).collect::<Vec<Field>>());
+        self.check_program(&program)?;
         let sheets: io::Result<Vec<Sheet>> = missing
             .iter()
             .map(|map| self.sheet(maps, target, map))
@@ -270,6 +272,7 @@ impl Output<'_> {
         let mut sheets = sheets.map_err(|error| RunError::not_written(&error))?;
         let painter = Painter {
             output: self.name(),
+            program: &program,
             target,
             options: &self.engine.options,
             context: self.engine.context(),
@@ -296,7 +299,7 @@ impl Output<'_> {
     }
 
     fn sheet(&self, maps: &Maps, target: &FlatPiece, map: &WantedMap) -> io::Result<Sheet> {
-        let (field, kind) = self.field(maps, &map.channel);
+        let (_, kind) = self.field(maps, &map.channel);
         let request = MapRequest {
             pixels: target.pixels(),
             size_mm: maps.size,
@@ -307,7 +310,6 @@ impl Output<'_> {
         };
         let range = maps.ranges.get(&map.channel).copied();
         Ok(Sheet {
-            field,
             encoder: Encoder::new(kind, maps.format, range),
             writer: output::create(&*self.engine.world, &self.path(map), &request)?,
             faults: Faults::default(),

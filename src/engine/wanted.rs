@@ -5,13 +5,19 @@ use super::known::KnownMap;
 use super::render::{Output, WantedMap};
 use super::{FlatPiece, RESULTS, RunError, files};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::field::{Field, Target};
+use crate::field::{Field, Program, Target};
 use crate::key::KeyHasher;
 use crate::nodes::output::normal_from_height;
 use crate::output::{LARGEST_BMP, MapKind, bmp_bytes};
 use crate::value::{FileType, Maps, Value};
 use petgraph::graph::NodeIndex;
 use std::sync::Arc;
+
+/// Most bytes that the columns of a tile may take in each thread.
+const TILE_BYTES: usize = 1 << 30;
+
+/// Most operations that the programs of an output may have, those for single pixels included.
+const OPERATIONS: usize = 4_000_000;
 
 impl Output<'_> {
     pub(super) fn maps<'b>(&self, built: &'b Built) -> &'b Maps {
@@ -49,17 +55,49 @@ impl Output<'_> {
         if found <= limit {
             return self.check_bmp(maps, [width, height]);
         }
-        let node = &self.request.graph.nodes[self.index];
         let message = format!("the maps would have {width} x {height} = {found} pixels");
-        Err(RunError::Limit(vec![
+        let hint = format!("lower the resolution, or allow it with `--max-pixels {found}`");
+        Err(self.too_much(message, limit, found, "pixels", hint))
+    }
+
+    /// Refuses programs that no machine would get through.
+    pub(super) fn check_program(&self, program: &Program) -> Result<(), RunError> {
+        let bytes = program.tile_bytes(self.engine.options.tile as usize);
+        let operations = program.most_operations();
+        if bytes > TILE_BYTES {
+            let message = format!(
+                "each tile needs {} pixels around it, since many nodes look at their neighbours",
+                program.margin()
+            );
+            let hint = "shorten the chains of thresholds, `min` and `max`, or use `--tile`";
+            return Err(self.too_much(message, TILE_BYTES as u64, bytes as u64, "bytes", hint));
+        }
+        if operations > OPERATIONS {
+            let message =
+                "the maps depend on too many nodes of which single pixels may be supersampled";
+            let hint = "shorten the chains of thresholds, `min` and `max`";
+            let (limit, found) = (OPERATIONS as u64, operations as u64);
+            return Err(self.too_much(message, limit, found, "operations", hint));
+        }
+        Ok(())
+    }
+
+    fn too_much(
+        &self,
+        message: impl Into<String>,
+        limit: u64,
+        found: u64,
+        of: &str,
+        hint: impl Into<String>,
+    ) -> RunError {
+        let node = &self.request.graph.nodes[self.index];
+        RunError::Limit(vec![
             Diagnostic::error(Code::TooMuch, message)
                 .at(&node.origin.source, node.span.clone(), "this output")
                 .in_node(&*node.name)
-                .expected(format!("at most {limit} pixels"), format!("{found} pixels"))
-                .hint(format!(
-                    "lower the resolution, or allow it with `--max-pixels {found}`"
-                )),
-        ]))
+                .expected(format!("at most {limit} {of}"), format!("{found} {of}"))
+                .hint(hint),
+        ])
     }
 
     fn check_bmp(&self, maps: &Maps, pixels: [u32; 2]) -> Result<(), RunError> {

@@ -6,7 +6,7 @@
 
 use super::{Field, Kernel, Operation, Sampling};
 use crate::key::{Key, KeyHasher};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, OnceLock};
 
 /// A linear list of column operations that gives the columns of some fields.
@@ -71,21 +71,6 @@ impl Program {
         Compiler::new(true).compile(fields)
     }
 
-    /// How many samples beyond a tile have to be evaluated with it.
-    pub fn margin(&self) -> usize {
-        self.margin
-    }
-
-    /// Number of column buffers in use at once.
-    pub fn buffers(&self) -> usize {
-        self.slots
-    }
-
-    /// Number of operations.
-    pub fn length(&self) -> usize {
-        self.steps.len()
-    }
-
     /// Identifies the program: two with the same key do the same.
     pub fn key(&self) -> Key {
         self.key
@@ -107,6 +92,7 @@ struct Compiler {
     columns_of: HashMap<(Key, usize), Vec<usize>>,
     spread_of: HashMap<usize, [usize; 2]>,
     constant_of: HashMap<u32, usize>,
+    constant_columns: HashSet<usize>,
     constants: Vec<(usize, f32)>,
     steps: Vec<Step>,
     columns: usize,
@@ -126,6 +112,7 @@ impl Compiler {
             columns_of: HashMap::new(),
             spread_of: HashMap::new(),
             constant_of: HashMap::new(),
+            constant_columns: HashSet::new(),
             constants: Vec::new(),
             steps: Vec::new(),
             columns: POSITION.len(),
@@ -142,7 +129,7 @@ impl Compiler {
                 self.columns(field)
             })
             .collect();
-        let margin = assign_margins(&mut self.steps, self.columns);
+        let margin = super::cost::assign_margins(&mut self.steps, self.columns);
         let program = Program {
             steps: self.steps,
             slots: self.columns,
@@ -256,11 +243,10 @@ impl Compiler {
             .map(|(column, of)| kernel.reads_spread(column).then(|| self.spread(*of)))
             .collect();
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
-        let within =
-            (self.supersampling && kernel.sampling() != Sampling::Filtered).then(|| Within {
-                field: self.seen_from_root(field, place),
-                program: OnceLock::new(),
-            });
+        let within = self.may_be_supersampled(&*kernel, &inputs).then(|| Within {
+            field: self.seen_from_root(field, place),
+            program: OnceLock::new(),
+        });
         let key = KeyHasher::new("step", 1)
             .key(field.key())
             .key(self.places[place].key)
@@ -277,6 +263,17 @@ impl Compiler {
         };
         self.steps.push(Step::Kernel(Box::new(step)));
         outputs
+    }
+
+    /// Whether the kernel cannot filter and reads what may change from sample to sample.
+    fn may_be_supersampled(&self, kernel: &dyn Kernel, inputs: &[usize]) -> bool {
+        let varies = |column: &usize| !self.constant_columns.contains(column);
+        let needs_samples = match kernel.sampling() {
+            Sampling::Filtered => false,
+            Sampling::FilteredWhereStraight { column, .. } => varies(&inputs[column]),
+            Sampling::Supersampled => inputs.iter().any(varies),
+        };
+        self.supersampling && needs_samples
     }
 
     /// The field as seen from the samples' own positions.
@@ -306,6 +303,7 @@ impl Compiler {
         let column = self.new_column();
         self.constant_of.insert(value.to_bits(), column);
         self.constants.push((column, value));
+        self.constant_columns.insert(column);
         column
     }
 
@@ -313,33 +311,4 @@ impl Compiler {
         self.columns += 1;
         self.columns - 1
     }
-}
-
-/// Finds how far beyond the tile every column is read; gives the largest distance.
-fn assign_margins(steps: &mut [Step], columns: usize) -> usize {
-    let mut margins = vec![0; columns];
-    for step in steps.iter_mut().rev() {
-        match step {
-            Step::Spread { of, along } => {
-                let distance = margins[along[0]].max(margins[along[1]]) + 1;
-                margins[*of] = margins[*of].max(distance);
-            }
-            Step::Kernel(step) => {
-                step.margin = step
-                    .outputs
-                    .iter()
-                    .map(|column| margins[*column])
-                    .max()
-                    .unwrap_or(0);
-                // Whether an input bends is seen by looking at its neighbours.
-                let distance = step.margin + usize::from(step.within.is_some());
-                let spreads = step.spreads.iter().flatten().flatten();
-                spreads.for_each(|column| margins[*column] = margins[*column].max(step.margin));
-                step.inputs
-                    .iter()
-                    .for_each(|column| margins[*column] = margins[*column].max(distance));
-            }
-        }
-    }
-    margins.into_iter().max().unwrap_or(0)
 }

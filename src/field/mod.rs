@@ -5,6 +5,7 @@
 //! Two fields with the same [`Field::key`] have the same values, so they are computed once.
 
 mod compile;
+mod cost;
 mod kernel;
 mod run;
 mod samples;

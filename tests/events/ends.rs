@@ -129,6 +129,41 @@ fn more_pixels_than_allowed_are_refused_before_anything_is_painted() {
     assert!(!run.log().contains("tiles"), "{}", run.log());
 }
 
+/// A chain of 3000 mixes whose amounts vary over the piece.
+fn mixes(amount: impl Fn(usize) -> String) -> String {
+    let mix = |index: usize| {
+        let (before, amount) = (index - 1, amount(index - 1));
+        format!("\"n{index}\": mix(a: \"n{before}\", b: \"#c8a06e\", amount: \"{amount}\"),")
+    };
+    format!(
+        "(nodes: {{
+            \"fibre\": solid_noise(size: (5, 5, 150)),
+            \"n0\": mix(a: \"#5b3a1e\", b: \"#c8a06e\", amount: \"fibre.value\"),
+            {}
+            \"wood\": material(base_color: \"n3000\"),
+            \"piece\": slice_cut(of: \"wood\", cut: end_grain, origin: (0, 0, 0), size: (10, 10)),
+        }},
+        outputs: {{ \"board\": maps(of: \"piece\", pixels: (8, 8), channels: [base_color]) }})",
+        (1..=3000).map(mix).collect::<String>()
+    )
+}
+
+#[test]
+fn programs_that_would_take_too_much_are_refused() {
+    let same = mixes(|_| "fibre.value".into());
+    let of_the_one_before = mixes(|before| format!("= luminance(n{before})"));
+    for (recipe, of) in [(same, "operations"), (of_the_one_before, "bytes")] {
+        let run = without_store().render(&recipe, &[], Cancel::new(), &|_| {});
+        let Err(RunError::Limit(wrong)) = &run.result else {
+            panic!("{:?}", run.result);
+        };
+        assert_eq!(wrong[0].code, Code::TooMuch);
+        let found = wrong[0].found.as_deref().unwrap_or_default();
+        assert!(found.ends_with(of), "{found}");
+        assert!(!run.log().contains("tiles"), "{}", run.log());
+    }
+}
+
 #[test]
 fn a_bmp_that_is_too_large_is_refused_before_any_output_is_painted() {
     let mut workshop = without_store();

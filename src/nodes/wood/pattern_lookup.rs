@@ -5,6 +5,7 @@
 //! a pixel melt into their mean colour and the border between late and early wood is as wide as a pixel.
 //! Behind the end of a pattern the last colour goes on: `inside` tells how much of a sample is wood.
 
+mod middle;
 mod rings;
 mod span;
 mod table;
