@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // What `--set ring_width=2` does on the command line.
     let settings = Settings {
         set: vec![("ring_width".to_owned(), "2".to_owned())],
-        seed: None,
+        ..Settings::default()
     };
     // Everything that is wrong comes at once, and prints as the command line prints it.
     let loaded = load(&Disk, &recipe, &settings).map_err(|errors| render_all(&errors))?;

@@ -15,7 +15,8 @@ use yosegi::world::Disk;
 const FOLDER: &str = "tests/diagnostics";
 
 /// Codes that no file of reasonable size in this folder can cause, and the tests that cause them.
-const ELSEWHERE: [(Code, &str); 7] = [
+const ELSEWHERE: [(Code, &str); 8] = [
+    (Code::OutputOverInput, "tests/outside.rs"),
     (Code::InvalidEdit, "tests/edit.rs"),
     (Code::FileNotRead, "tests/diagnostics_limits.rs"),
     (Code::TooLarge, "tests/diagnostics_limits.rs"),
@@ -54,7 +55,7 @@ fn diagnostics(path: &Path) -> Vec<Diagnostic> {
     let set = set.map(|(name, value)| (name.to_owned(), value.to_owned()));
     let settings = Settings {
         set: set.into_iter().collect(),
-        seed: None,
+        ..Settings::default()
     };
     match load(&Disk, path, &settings) {
         Err(diagnostics) => diagnostics,

@@ -44,7 +44,7 @@ fn settings(set: &[(&str, &str)]) -> Settings {
     let owned = |(name, value): &(&str, &str)| ((*name).to_owned(), (*value).to_owned());
     Settings {
         set: set.iter().map(owned).collect(),
-        seed: None,
+        ..Settings::default()
     }
 }
 
@@ -211,8 +211,8 @@ fn parameters_can_be_set_in_their_own_type() {
         "a.ron",
         RECIPE,
         &Settings {
-            set: vec![],
             seed: Some(9),
+            ..Settings::default()
         },
     )
     .unwrap();

@@ -54,6 +54,9 @@ struct RecipeArguments {
     /// Seed of every random stream, instead of the recipe's own.
     #[arg(long)]
     seed: Option<u64>,
+    /// Let recipes name files anywhere, and not only below their folders and assets.
+    #[arg(long)]
+    allow_outside: bool,
     /// Print events and diagnostics as JSON, one a line.
     #[arg(long)]
     json: bool,
@@ -124,6 +127,7 @@ impl RecipeArguments {
         yosegi::graph::Settings {
             set: self.set.clone(),
             seed: self.seed,
+            allow_outside: self.allow_outside,
         }
     }
 }

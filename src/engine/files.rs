@@ -1,11 +1,14 @@
-//! Names of map files, and that no two outputs of a run share one.
+//! Names of map files: no two outputs of a run share one, and none is that of something that is read.
 
 use super::RunError;
+use super::plan::Plan;
 use crate::diagnostics::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::value::MapFormat;
+use crate::world::World;
 use petgraph::graph::NodeIndex;
 use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
 /// The file of a channel of an output.
 pub(super) fn file_name(output: &str, channel: &str, format: MapFormat) -> String {
@@ -33,4 +36,77 @@ pub(super) fn refuse_shared(
         ]));
     }
     Ok(())
+}
+
+/// What no map may replace: the recipe, the files that it reads, and the store.
+pub(super) struct Protected {
+    files: Vec<PathBuf>,
+    store: Option<PathBuf>,
+}
+
+impl Protected {
+    /// Of a run that reads the recipe and the files of `plan`.
+    pub(super) fn new(world: &dyn World, plan: &Plan<'_>, store: Option<&Path>) -> Protected {
+        let recipe = real_path(world, &plan.graph.source.path);
+        let store = store.map(|folder| real_path(world, folder));
+        Protected {
+            files: plan.places.iter().cloned().chain([recipe]).collect(),
+            store,
+        }
+    }
+
+    /// What a map at `path` would replace.
+    fn replaced(&self, world: &dyn World, path: &Path) -> Option<&'static str> {
+        let path = real_path(world, path);
+        let is_in_store = || {
+            self.store
+                .as_ref()
+                .is_some_and(|store| path.starts_with(store))
+        };
+        if self.files.contains(&path) {
+            Some("the recipe or a file that it reads")
+        } else if is_in_store() {
+            Some("a file in the store of earlier results")
+        } else {
+            None
+        }
+    }
+
+    /// Whether a map may be written at `path`.
+    pub(super) fn allows(&self, world: &dyn World, path: &Path) -> bool {
+        self.replaced(world, path).is_none()
+    }
+
+    /// Refuses outputs with a map that may not be written.
+    pub(super) fn refuse<'f>(
+        &self,
+        world: &dyn World,
+        graph: &Graph,
+        mut files: impl Iterator<Item = (NodeIndex, &'f Path)>,
+    ) -> Result<(), RunError> {
+        let wrong =
+            files.find_map(|(index, path)| Some((index, path, self.replaced(world, path)?)));
+        let Some((index, path, replaced)) = wrong else {
+            return Ok(());
+        };
+        let node = &graph.nodes[index];
+        let message = format!("the map `{}` would replace {replaced}", path.display());
+        Err(RunError::Request(vec![
+            Diagnostic::error(Code::OutputOverInput, message)
+                .at(&graph.source, node.span.clone(), "this output")
+                .in_node(&*node.name)
+                .hint("choose another folder for the maps, with `--output`, or rename the output"),
+        ]))
+    }
+}
+
+/// Where a file really lies or would lie.
+fn real_path(world: &dyn World, path: &Path) -> PathBuf {
+    let in_real_folder = || {
+        let folder = world.real_path(path.parent()?).ok()?;
+        Some(folder.join(path.file_name()?))
+    };
+    let real = world.real_path(path).ok();
+    real.or_else(in_real_folder)
+        .unwrap_or_else(|| path.to_owned())
 }

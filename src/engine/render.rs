@@ -72,10 +72,12 @@ impl Engine {
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
         let plan = self.plan(request.graph, &wanted)?;
+        let protected = files::Protected::new(&*self.world, &plan, self.options.store.as_deref());
         let output = |index| Output {
             engine: self,
             request,
             plan: &plan,
+            protected: &protected,
             index,
         };
         let outputs: Vec<Output<'_>> = wanted.into_iter().map(output).collect();
@@ -86,7 +88,14 @@ impl Engine {
         let rest = self.plan(request.graph, &missing)?;
         let built = self.build(&rest, request.listener, &request.cancel)?;
         let names = pairs().flat_map(|(output, known)| output.file_names(known.as_deref(), &built));
-        files::refuse_shared(request.graph, names)?;
+        let names: Vec<_> = names.collect();
+        files::refuse_shared(request.graph, names.iter().cloned())?;
+        let paths: Vec<_> = names
+            .iter()
+            .map(|(index, name)| (*index, request.folder.join(name)))
+            .collect();
+        let paths = paths.iter().map(|(index, path)| (*index, path.as_path()));
+        protected.refuse(&*self.world, request.graph, paths)?;
         let mut rendered = vec![];
         for (output, known) in outputs.iter().zip(known) {
             rendered.extend(match known {
@@ -130,6 +139,7 @@ pub(super) struct Output<'a> {
     pub(super) engine: &'a Engine,
     pub(super) request: &'a Render<'a>,
     pub(super) plan: &'a Plan<'a>,
+    pub(super) protected: &'a files::Protected,
     pub(super) index: NodeIndex,
 }
 
@@ -154,6 +164,11 @@ impl Output<'_> {
         let store = self.engine.store.as_ref()?;
         let bytes = store.get("plan", &self.plan_key())?;
         let maps: Vec<WantedMap> = postcard::from_bytes(&bytes).ok()?;
+        let is_allowed =
+            |map: &WantedMap| self.protected.allows(&*self.engine.world, &self.path(map));
+        if !maps.iter().all(is_allowed) {
+            return None;
+        }
         let events: Option<Vec<Event>> = maps.iter().map(|map| self.in_place(store, map)).collect();
         events?
             .into_iter()

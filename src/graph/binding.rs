@@ -79,40 +79,7 @@ impl Linker<'_, '_> {
         let Value::Text(path) = self.reader.literal(tree, slot)? else {
             return None;
         };
-        let reason = if path.is_empty() {
-            "the path is empty"
-        } else if path.starts_with('/') {
-            "the path begins at the root of the disk"
-        } else if path.split('/').any(|part| part == "..") {
-            "the path leaves the folder"
-        } else if path.contains('\\') {
-            "the path has a backslash"
-        } else if path.contains(':') {
-            "the path has a colon"
-        } else if path.contains(char::is_control) {
-            "the path has a control character"
-        } else {
-            return Some(Source::File(PathBuf::from(path)));
-        };
-        let message = format!(
-            "{} must be a file in the folder of the recipe or of its assets, found {}",
-            shown(slot.name),
-            shown(&path)
-        );
-        self.reader.refuse(
-            Code::PathOutside,
-            message,
-            tree.span.clone(),
-            reason,
-            |error| {
-                error
-                    .expected(
-                        "a path below the recipe's folder or its assets",
-                        shown(&path),
-                    )
-                    .hint("write a path such as `photos/bar.png`, with forward slashes")
-            },
-        )
+        Some(Source::File(PathBuf::from(path)))
     }
 
     /// A map from names to numbers and colours.

@@ -3,7 +3,7 @@
 use super::check::{self, Draft};
 use super::parameters::Parameters;
 use super::report::Report;
-use super::{Graph, Node, domains, order, recipe, text};
+use super::{Graph, Node, domains, edit, order, recipe, text};
 use crate::diagnostics::{Code, Diagnostic, SourceFile};
 use crate::node::Kind;
 use crate::nodes::KINDS;
@@ -19,6 +19,8 @@ pub struct Settings {
     pub set: Vec<(String, String)>,
     /// Takes the place of the recipe's seed.
     pub seed: Option<u64>,
+    /// Lets the recipe name files anywhere, and not only below its folder and its assets.
+    pub allow_outside: bool,
 }
 
 /// A recipe that can be rendered.
@@ -93,6 +95,7 @@ fn load_source(
     let recipe = recipe::read(&mut report, &tree);
     let (mut parameters, set_problems) =
         Parameters::read(&mut report, &recipe.parameters, &settings.set);
+    parameters.allow_outside = settings.allow_outside;
     let mut drafts = check::check(&mut report, &recipe, &mut parameters, kinds);
     let edges = order::edges(&drafts);
     if let Some(order) = order::sort(&mut report, &drafts, &edges) {
@@ -112,6 +115,7 @@ fn load_source(
         source: Arc::clone(source),
         about: recipe.about,
         seed: settings.seed.unwrap_or(recipe.seed),
+        allow_outside: settings.allow_outside,
         parameters: parameters.finish(),
         outputs: indices(&drafts, true).map(|(index, _)| index).collect(),
         by_name: indices(&drafts, false)
@@ -157,15 +161,11 @@ fn report_empty(report: &mut Report) {
 
 /// The mistake of a recipe that is to be rendered and has no output.
 pub fn no_output(graph: &Graph) -> Diagnostic {
-    let end = graph.source.text.trim_end().len();
+    let (place, label) = edit::outputs_place(&graph.source);
     Diagnostic::error(
         Code::NoOutput,
         "the recipe has no output, so there is nothing to render",
     )
-    .at(
-        &graph.source,
-        end.saturating_sub(1)..end,
-        "`outputs` is missing here",
-    )
+    .at(&graph.source, place, label)
     .hint("add `outputs: { \"name\": maps(of: \"node\") }`")
 }

@@ -1,7 +1,9 @@
 //! The parameters of a recipe: their declarations, what the caller sets, and what refers to them.
 
+use super::described::described_unit;
 use super::literal::{Reader, Slot};
 use super::names::shown;
+use super::number;
 use super::recipe::{Declaration, report_duplicate_field};
 use super::report::Report;
 use super::tree::{Field, Shape, Tree};
@@ -21,6 +23,8 @@ const FIELDS: [&str; 4] = ["default", "range", "unit", "about"];
 pub(super) struct Parameters {
     declared: Vec<Declared>,
     by_name: HashMap<String, usize>,
+    /// Whether the caller lets files be anywhere.
+    pub(super) allow_outside: bool,
 }
 
 /// A parameter, and what checking needs to know of it.
@@ -107,6 +111,9 @@ impl Parameters {
         let Some(value_type) = declared.value_type else {
             return vec![];
         };
+        if let Some(problem) = refuse_unit(declared, literal) {
+            return vec![problem];
+        }
         let literal = quoted(value_type, literal);
         let source = Arc::new(SourceFile::new(format!("--set {name}"), literal));
         let mut report = Report::new(&source);
@@ -127,6 +134,29 @@ impl Parameters {
         }
         report.finish()
     }
+}
+
+/// The mistake of writing a number with its unit.
+fn refuse_unit(declared: &Declared, literal: &str) -> Option<Diagnostic> {
+    let is_number = |text: &str| number::read(text).is_some();
+    let (number, unit) = literal.trim().split_once([' ', '\t'])?;
+    let (name, unit) = (shown(&declared.name), unit.trim());
+    let may_have_unit = matches!(declared.value_type, Some(Type::Number(_) | Type::Whole));
+    if !may_have_unit || !is_number(number) || unit.starts_with(['/', ',']) {
+        return None;
+    }
+    let wanted = described_unit(declared.unit);
+    let message = format!(
+        "parameter {name} is {wanted}, found {}",
+        shown(literal.trim())
+    );
+    let hint = match unit == declared.unit.symbol() {
+        true => "write the number alone: its unit is known",
+        false => "write the number alone, in the parameter's unit; units are not converted",
+    };
+    let error = Diagnostic::error(Code::UnitMismatch, message);
+    let error = error.expected(format!("a number, {wanted}"), shown(literal.trim()));
+    Some(error.hint(format!("{hint}: `--set {}={number}`", declared.name)))
 }
 
 /// Shells eat quotes: what can only be text gets them back.

@@ -7,7 +7,7 @@ pub use disk::Disk;
 pub use memory::Memory;
 
 use std::io::{self, Read, Seek, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Where recipes, assets and the store are read from, and where maps go.
 pub trait World: Send + Sync {
@@ -23,6 +23,15 @@ pub trait World: Send + Sync {
     /// As [`World::read`].
     fn open(&self, path: &Path) -> io::Result<Box<dyn Read>> {
         Ok(Box::new(io::Cursor::new(self.read(path)?)))
+    }
+
+    /// Where the file or folder at `path` really lies, behind symbolic links; a world without links has
+    /// it where it is.
+    ///
+    /// # Errors
+    /// Whatever the operating system says; a path that leads nowhere is an error as well.
+    fn real_path(&self, path: &Path) -> io::Result<PathBuf> {
+        Ok(path.to_owned())
     }
 
     /// The first `length` bytes of a file, or all of it if it is shorter.
