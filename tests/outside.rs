@@ -3,15 +3,17 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::io;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use tempfile::TempDir;
 use yosegi::diagnostics::{Code, Diagnostic};
 use yosegi::engine::{Cancel, Engine, Options, Render, RunError};
 use yosegi::graph::{Settings, load};
-use yosegi::world::Disk;
+use yosegi::world::{Disk, PendingFile, World};
 
 const RECIPE: &str = r#"(
     nodes: {
@@ -168,4 +170,99 @@ fn a_map_never_replaces_what_is_read() {
     symlink("../recipes/a.ron", place.path("out/bar_base_color.png")).unwrap();
     assert_eq!(code(place.problem("out", false)), over_input);
     assert_eq!(contents(&place.path("recipes/a.ron")), recipe);
+}
+
+/// A disk that counts how often each file is read, and may cut pictures short.
+#[derive(Default)]
+struct Counting {
+    reads: Mutex<BTreeMap<PathBuf, usize>>,
+    shortest: Option<usize>,
+}
+
+impl World for Counting {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let mut reads = self.reads.lock().unwrap();
+        *reads.entry(path.to_owned()).or_default() += 1;
+        let mut bytes = Disk.read(path)?;
+        bytes.truncate(self.shortest.unwrap_or(bytes.len()));
+        Ok(bytes)
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
+        Disk.create(path)
+    }
+}
+
+fn render_in(world: Arc<Counting>, place: &Place) -> Result<usize, RunError> {
+    let loaded = load(&Disk, &place.path("recipes/a.ron"), &Settings::default()).unwrap();
+    let rendered = Engine::new(world, Options::default())
+        .unwrap()
+        .render(&Render {
+            graph: &loaded.graph,
+            folder: place.path("out"),
+            only: vec![],
+            pixels: None,
+            listener: &|_| {},
+            cancel: Cancel::new(),
+        });
+    rendered.map(|maps| maps.len())
+}
+
+/// What is hashed is what is decoded: a file that is swapped in between cannot be taken for the other.
+#[test]
+fn every_file_is_read_once() {
+    let place = Place::new(RECIPE);
+    fs::copy(place.path("outside.png"), place.path("recipes/bar.png")).unwrap();
+    let world = Arc::new(Counting::default());
+    assert_eq!(render_in(Arc::clone(&world), &place).unwrap(), 1);
+    let reads = world.reads.lock().unwrap();
+    assert_eq!(reads.get(&place.path("recipes/bar.png")), Some(&1));
+    assert!(reads.values().all(|count| *count == 1), "{reads:?}");
+}
+
+/// A picture that is cut short while it is read fails its node, and the old map stays.
+#[test]
+fn a_file_cut_short_fails_its_node() {
+    let place = Place::new(RECIPE);
+    fs::copy(place.path("outside.png"), place.path("recipes/bar.png")).unwrap();
+    render_in(Arc::new(Counting::default()), &place).unwrap();
+    let before = contents(&place.path("out/bar_base_color.png"));
+    for shortest in [0, 1, 8, 30, 100, 2000] {
+        let world = Counting {
+            shortest: Some(shortest),
+            ..Counting::default()
+        };
+        let Err(RunError::Nodes(problems)) = render_in(Arc::new(world), &place) else {
+            panic!("a picture of {shortest} bytes is read");
+        };
+        assert_eq!(problems[0].node.as_deref(), Some("bar"));
+        assert_eq!(contents(&place.path("out/bar_base_color.png")), before);
+    }
+}
+
+#[test]
+fn the_item_of_a_list_is_blamed() {
+    let recipe = RECIPE.replace(
+        "\"bar\": sample_pattern(file: \"bar.png\"),",
+        "\"tree\": skeleton(trunk: [(0, 0, 0), (0, 0, 900)], branches: [(at: 1, direction: (1, 0, 0), \
+         thickening: 1), (at: 950, direction: (1, 0, 0), thickening: 1)]),",
+    );
+    let recipe = recipe.replace(
+        "pattern_lookup(time: 0.5, pattern: \"bar\")",
+        "growth_field(skeleton: \"tree\", elongation: 400, thickening: 2)",
+    );
+    let recipe = recipe.replace(
+        "base_color: \"look\"",
+        "base_color: (0, 0, 0), opacity: \"look.branch\"",
+    );
+    let place = Place::new(&recipe);
+    let Err(RunError::Nodes(problems)) = render_in(Arc::default(), &place) else {
+        panic!("the second branch leaves the trunk");
+    };
+    let label = problems[0].label.as_ref().unwrap();
+    assert!(
+        recipe[label.span.clone()].starts_with("(at: 950"),
+        "{:?}",
+        problems[0]
+    );
 }

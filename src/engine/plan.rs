@@ -48,6 +48,18 @@ impl<'g> Plan<'g> {
         Ok(plan)
     }
 
+    /// The plan for some of the nodes, with the files as they were read: to read them again might give
+    /// others than the keys speak of.
+    pub(super) fn part(&self, wanted: &[NodeIndex]) -> Plan<'g> {
+        Plan {
+            graph: self.graph,
+            order: ancestors(self.graph, wanted),
+            files: self.files.clone(),
+            places: self.places.clone(),
+            keys: self.keys.clone(),
+        }
+    }
+
     fn node_key(&self, index: NodeIndex) -> Key {
         let node = &self.graph.nodes[index];
         let mut key = KeyHasher::new("node", node.kind.version);

@@ -85,7 +85,7 @@ impl Engine {
         let pairs = || outputs.iter().zip(&known);
         let missing = pairs().filter(|(_, known)| known.is_none());
         let missing: Vec<NodeIndex> = missing.map(|(output, _)| output.index).collect();
-        let rest = self.plan(request.graph, &missing)?;
+        let rest = plan.part(&missing);
         let built = self.build(&rest, request.listener, &request.cancel)?;
         let names = pairs().flat_map(|(output, known)| output.file_names(known.as_deref(), &built));
         let names: Vec<_> = names.collect();

@@ -41,7 +41,8 @@ pub fn load(
     path: &Path,
     settings: &Settings,
 ) -> Result<Loaded, Vec<Diagnostic>> {
-    let bytes = world.read(path).map_err(|error| {
+    // Not more than shows that it is too large, so that nothing endless is read.
+    let bytes = world.read_start(path, text::LARGEST + 1).map_err(|error| {
         let message = format!("`{}` could not be read: {error}", path.display());
         let mut diagnostic = Diagnostic::error(Code::FileNotRead, message);
         diagnostic.source = Some(Arc::new(SourceFile::new(path, "")));

@@ -1,6 +1,7 @@
 //! Collects what is wrong with one text.
 
 use crate::diagnostics::{Code, Diagnostic, Severity, SourceFile, Span};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Mistakes that are kept; beyond, a file is not worth more memory.
@@ -56,13 +57,13 @@ impl Report {
         }
     }
 
-    /// Leaves out all but the first on each line: what is read behind a mistake is often misread.
+    /// Leaves out all but the first that was found on each line: what is read behind a mistake is often
+    /// misread.
     pub(super) fn keep_first_of_lines(&mut self) {
-        crate::diagnostics::sort(&mut self.diagnostics);
-        let source = &self.source;
-        self.diagnostics.dedup_by_key(|one| {
+        let mut lines = HashSet::new();
+        self.diagnostics.retain(|one| {
             let start = one.label.as_ref().map_or(0, |label| label.span.start);
-            source.line_of(start)
+            lines.insert(self.source.line_of(start))
         });
     }
 
