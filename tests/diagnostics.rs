@@ -15,7 +15,8 @@ use yosegi::world::Disk;
 const FOLDER: &str = "tests/diagnostics";
 
 /// Codes that no file of reasonable size in this folder can cause, and the tests that cause them.
-const ELSEWHERE: [(Code, &str); 6] = [
+const ELSEWHERE: [(Code, &str); 7] = [
+    (Code::OutputOverInput, "tests/outside.rs"),
     (Code::InvalidEdit, "tests/edit.rs"),
     (Code::FileNotRead, "tests/diagnostics_limits.rs"),
     (Code::TooLarge, "tests/diagnostics_limits.rs"),

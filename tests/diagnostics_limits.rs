@@ -66,6 +66,39 @@ fn every_beginning_of_a_recipe_is_read() {
 }
 
 #[test]
+fn every_beginning_of_every_gallery_recipe_is_read() {
+    for recipe in ["bent_trunk", "spruce_log_board", "straight_trunk"] {
+        let text = std::fs::read_to_string(format!("graphs/{recipe}.ron")).unwrap();
+        let whole = text.trim_end().len();
+        for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
+            assert_eq!(
+                load_plain(&text[..end]).is_ok(),
+                end >= whole,
+                "{}",
+                &text[..end]
+            );
+            survive(&text[..end]);
+        }
+    }
+}
+
+#[test]
+fn small_numbers_and_minus_zero_count_as_what_they_are() {
+    let text = |number: &str| {
+        format!("(nodes: {{ \"w\": material(base_color: (0, 0, 0), roughness: {number}) }})")
+    };
+    for number in [
+        "1e-999",
+        "-0.0",
+        "4.9e-324",
+        "-1e-999",
+        "2.2250738585072011e-308",
+    ] {
+        assert!(load_plain(text(number)).is_ok(), "{number}");
+    }
+}
+
+#[test]
 fn mutated_recipes_are_read() {
     let mut seed = 1_u64;
     let mut draw = |end: usize| {
@@ -257,6 +290,59 @@ fn files_that_cannot_be_read_are_named() {
         assert_eq!(diagnostic.code, Code::FileNotRead);
         assert!(diagnostic.message.contains(path), "{}", diagnostic.message);
     }
+}
+
+/// What never ends, or is no file at all, is refused at once.
+#[cfg(unix)]
+#[test]
+fn devices_pipes_and_sockets_are_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.ron");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let socket = folder.path().join("socket.ron");
+    let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+    let start = Instant::now();
+    for path in [
+        Path::new("/dev/zero"),
+        Path::new("/dev/null"),
+        &pipe,
+        &socket,
+        folder.path(),
+    ] {
+        let problem = read_error(&Disk, path.to_str().unwrap());
+        assert_eq!(problem.code, Code::FileNotRead, "{}", path.display());
+        assert!(
+            problem.message.ends_with("not a regular file"),
+            "{}",
+            problem.message
+        );
+    }
+    assert!(start.elapsed() < Duration::from_secs(5));
+}
+
+/// A file of 100 MB, most of it a hole, is refused by its first 16 MiB.
+#[test]
+fn a_large_file_is_refused_soon() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    file.as_file().set_len(100_000_000).unwrap();
+    let start = Instant::now();
+    let problem = read_error(&Disk, file.path().to_str().unwrap());
+    assert_eq!(problem.code, Code::TooLarge);
+    assert!(start.elapsed() < Duration::from_secs(5));
+}
+
+#[test]
+fn long_lines_are_cut_in_messages() {
+    let text = format!("(nodes: {{ \"a\": {} }})", "x".repeat(10_000_000));
+    let diagnostics = errors(text);
+    let shown = render_all(&diagnostics);
+    assert!(
+        shown.lines().all(|line| line.chars().count() <= 200),
+        "{shown}"
+    );
+    let json = render_json(&diagnostics[0]);
+    assert!(json.len() < 1000, "{} bytes", json.len());
 }
 
 #[test]

@@ -71,6 +71,9 @@ struct RecipeArguments {
     /// Largest number of nodes with those inside compounds [default: 200000].
     #[arg(long, value_name = "NUMBER")]
     max_nodes: Option<usize>,
+    /// Let recipes name files anywhere, and not only below their folders and assets.
+    #[arg(long)]
+    allow_outside: bool,
     /// Print events and diagnostics as JSON, one a line.
     #[arg(long)]
     json: bool,
@@ -82,6 +85,7 @@ impl RecipeArguments {
             set: self.set.clone(),
             seed: self.seed,
             largest_graph: self.max_nodes,
+            allow_outside: self.allow_outside,
         }
     }
 }

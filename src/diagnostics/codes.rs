@@ -155,7 +155,8 @@ codes! {
          parentheses, and min, max, abs, sqrt, clamp, mix and luminance.";
     PathOutside, "path-outside",
         "Files named by a recipe lie in its folder or below, and are written the same on every \
-         system: no leading slash, no `..`, no backslash, no colon.";
+         system: no leading slash, no `..`, no backslash, no colon, nothing that Windows takes for something \
+         else. `--allow-outside` lets a recipe name any file.";
     InvalidEdit, "invalid-edit",
         "An edit of a recipe's text cannot be made: what is to be removed is not written, or what is to be \
          deleted is still used. The text stays as it is.";
@@ -167,6 +168,9 @@ codes! {
     OutputNotWritten, "output-not-written",
         "A map could not be written: the folder does not exist and cannot be made, the disk is full, or \
          the system refused. What was there before is still whole.";
+    OutputOverInput, "output-over-input",
+        "A map would replace the recipe, a file that the recipe reads, or a file in the store of earlier \
+         results. Nothing was rendered. Choose another folder or another name for the output.";
     TooMuch, "too-much",
         "The maps asked for, the programs that compute them, or the nodes inside compounds are more than a \
          limit on one run. The message names the limit, and the switch that raises it or what would keep \

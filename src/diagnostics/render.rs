@@ -91,10 +91,19 @@ fn render(diagnostic: &Diagnostic, renderer: &Renderer) -> String {
     for help in helps(diagnostic) {
         group = group.element(Level::HELP.message(safe(&help).into_owned()));
     }
-    let text = renderer.render(&[group]);
+    let mut text = renderer.render(&[group]);
+    if diagnostic.label.is_none() {
+        text = without_excerpt(&text);
+    }
     // A cut line begins elsewhere, and the renderer counts columns from there.
     let (before, after) = text.split_at(text.find("--> ").unwrap_or(0));
     format!("{before}{}\n", after.replacen(&places.0, &places.1, 1))
+}
+
+/// The lines behind the first moved to where they stand if there is an excerpt, without its edge.
+fn without_excerpt(text: &str) -> String {
+    let lines = text.split('\n').filter(|line| line.trim() != "|");
+    lines.collect::<Vec<_>>().join("\n ")
 }
 
 /// The excerpts, and the place to blame as it is counted in the excerpt and in the file.

@@ -7,6 +7,7 @@ use super::store::Store;
 use super::{Cancel, RunError, arithmetic, content, reuse};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::field::Field;
+use crate::graph::edit::item_span;
 use crate::graph::{Binding, Link, Node, Source};
 use crate::key::{Key, KeyHasher};
 use crate::node::{Budget, Build, Failure, Inputs, field_of};
@@ -362,7 +363,13 @@ fn diagnose(plan: &Plan<'_>, index: NodeIndex, failure: Failure) -> Diagnostic {
     let node = &plan.graph.nodes[index];
     let blamed = failure.input.and_then(|name| node.kind.input(name));
     let span = match blamed {
-        Some((position, _)) => node.inputs[position].span.clone(),
+        Some((position, _)) => {
+            let span = &node.inputs[position].span;
+            let item = failure
+                .item
+                .and_then(|item| item_span(&plan.graph.source, span, item));
+            item.unwrap_or_else(|| span.clone())
+        }
         None => node.span.clone(),
     };
     let mut diagnostic = Diagnostic::error(Code::NodeFailed, failure.message)

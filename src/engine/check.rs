@@ -31,7 +31,9 @@ impl Engine {
         };
         let plan = self.plan(graph, &if is_whole { all(graph) } else { wanted.clone() })?;
         let built = self.build(&plan, request.listener, &request.cancel)?;
-        let outputs = self.outputs(request, &plan, &wanted);
+        let store = self.options.store.as_deref();
+        let protected = files::Protected::new(&*self.world, &plan, store);
+        let outputs = self.outputs(request, &plan, &protected, &wanted);
         let mut failures = built.failures.clone();
         let names = outputs.iter().flat_map(|it| it.file_names(None, &built));
         if let Err(error) = files::refuse_shared(graph, names) {

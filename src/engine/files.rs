@@ -1,6 +1,8 @@
-//! Names of map files, that no two outputs of a run share one, and which are left from earlier runs.
+//! Names of map files: no two outputs of a run share one, none is that of something that is read, and which
+//! are left from earlier runs.
 
 use super::RunError;
+use super::plan::Plan;
 use crate::diagnostics::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::output;
@@ -65,4 +67,81 @@ pub(super) fn stale(
         }
     }
     stale
+}
+
+/// What no map may replace: the recipe, the files that it reads, and the store.
+pub(super) struct Protected {
+    files: Vec<PathBuf>,
+    store: Option<PathBuf>,
+}
+
+impl Protected {
+    /// Of a run that reads the recipe and the files of `plan`.
+    pub(super) fn new(world: &dyn World, plan: &Plan<'_>, store: Option<&Path>) -> Protected {
+        let recipes = plan
+            .graph
+            .files
+            .iter()
+            .map(|file| real_path(world, &file.path));
+        let store = store.map(|folder| real_path(world, folder));
+        Protected {
+            files: plan.places.iter().cloned().chain(recipes).collect(),
+            store,
+        }
+    }
+
+    /// What a map at `path` would replace.
+    fn replaced(&self, world: &dyn World, path: &Path) -> Option<&'static str> {
+        let path = real_path(world, path);
+        let is_in_store = || {
+            self.store
+                .as_ref()
+                .is_some_and(|store| path.starts_with(store))
+        };
+        if self.files.contains(&path) {
+            Some("the recipe or a file that it reads")
+        } else if is_in_store() {
+            Some("a file in the store of earlier results")
+        } else {
+            None
+        }
+    }
+
+    /// Whether a map may be written at `path`.
+    pub(super) fn allows(&self, world: &dyn World, path: &Path) -> bool {
+        self.replaced(world, path).is_none()
+    }
+
+    /// Refuses outputs with a map that may not be written.
+    pub(super) fn refuse<'f>(
+        &self,
+        world: &dyn World,
+        graph: &Graph,
+        mut files: impl Iterator<Item = (NodeIndex, &'f Path)>,
+    ) -> Result<(), RunError> {
+        let wrong =
+            files.find_map(|(index, path)| Some((index, path, self.replaced(world, path)?)));
+        let Some((index, path, replaced)) = wrong else {
+            return Ok(());
+        };
+        let node = &graph.nodes[index];
+        let message = format!("the map `{}` would replace {replaced}", path.display());
+        Err(RunError::Request(vec![
+            Diagnostic::error(Code::OutputOverInput, message)
+                .at(&graph.source, node.span.clone(), "this output")
+                .in_node(&*node.name)
+                .hint("choose another folder for the maps, with `--output`, or rename the output"),
+        ]))
+    }
+}
+
+/// Where a file really lies or would lie.
+fn real_path(world: &dyn World, path: &Path) -> PathBuf {
+    let in_real_folder = || {
+        let folder = world.real_path(path.parent()?).ok()?;
+        Some(folder.join(path.file_name()?))
+    };
+    let real = world.real_path(path).ok();
+    real.or_else(in_real_folder)
+        .unwrap_or_else(|| path.to_owned())
 }

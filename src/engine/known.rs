@@ -77,6 +77,13 @@ impl Output<'_> {
     /// The maps, if the store knows them all and they are in place or can be put there; changes nothing.
     pub(super) fn known(&self) -> Option<KnownOutput> {
         let OutputRecord { maps, warnings } = self.engine.planned(&self.plan_key())?;
+        let world = &*self.engine.world;
+        if !maps
+            .iter()
+            .all(|map| self.protected.allows(world, &self.path(map)))
+        {
+            return None;
+        }
         let maps: Option<Vec<_>> = maps.iter().map(|map| self.known_map(map)).collect();
         maps.map(|maps| KnownOutput { maps, warnings })
     }

@@ -1,6 +1,7 @@
 //! Evaluates checked graphs: plans, builds structures, paints outputs, remembers both.
 
 mod arithmetic;
+mod beside;
 mod build;
 mod cancel;
 mod check;

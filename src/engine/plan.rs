@@ -1,6 +1,7 @@
 //! What has to run for some nodes: their ancestors in order, the files these read, and plan keys.
 
 use super::RunError;
+use super::beside::Beside;
 use crate::diagnostics::{Code, Diagnostic};
 use crate::graph::{Arithmetic, Graph, NamedFile, Source};
 use crate::key::{Key, KeyHasher};
@@ -9,8 +10,7 @@ use crate::world::World;
 use petgraph::Direction;
 use petgraph::graph::NodeIndex;
 use std::collections::HashMap;
-use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The part of a graph that some nodes depend on.
 pub(super) struct Plan<'g> {
@@ -19,6 +19,8 @@ pub(super) struct Plan<'g> {
     pub(super) order: Vec<NodeIndex>,
     /// Contents of the files that they name.
     pub(super) files: HashMap<NamedFile, FileContents>,
+    /// Where these files really lie.
+    pub(super) places: Vec<PathBuf>,
     /// For every node in `order` what it is, before anything has run.
     pub(super) keys: HashMap<NodeIndex, Key>,
 }
@@ -31,11 +33,12 @@ impl<'g> Plan<'g> {
         world: &dyn World,
     ) -> Result<Plan<'g>, RunError> {
         let order = ancestors(graph, wanted);
-        let files = read_files(graph, &order, world)?;
+        let ReadFiles { files, places } = read_files(graph, &order, world)?;
         let mut plan = Plan {
             graph,
             order,
             files,
+            places,
             keys: HashMap::new(),
         };
         for index in plan.order.clone() {
@@ -43,6 +46,18 @@ impl<'g> Plan<'g> {
             plan.keys.insert(index, key);
         }
         Ok(plan)
+    }
+
+    /// The plan for some of the nodes, with the files as they were read: to read them again might give
+    /// others than the keys speak of.
+    pub(super) fn part(&self, wanted: &[NodeIndex]) -> Plan<'g> {
+        Plan {
+            graph: self.graph,
+            order: ancestors(self.graph, wanted),
+            files: self.files.clone(),
+            places: self.places.clone(),
+            keys: self.keys.clone(),
+        }
     }
 
     fn node_key(&self, index: NodeIndex) -> Key {
@@ -128,11 +143,19 @@ pub(super) fn ancestors(graph: &Graph, wanted: &[NodeIndex]) -> Vec<NodeIndex> {
         .collect()
 }
 
+/// What the nodes read, and where it lies.
+struct ReadFiles {
+    files: HashMap<NamedFile, FileContents>,
+    places: Vec<PathBuf>,
+}
+
 fn read_files(
     graph: &Graph,
     order: &[NodeIndex],
     world: &dyn World,
-) -> Result<HashMap<NamedFile, FileContents>, RunError> {
+) -> Result<ReadFiles, RunError> {
+    let mut folders: HashMap<&Path, Beside<'_>> = HashMap::new();
+    let mut places = vec![];
     let mut files = HashMap::new();
     let mut errors = vec![];
     for index in order {
@@ -145,8 +168,12 @@ fn read_files(
                 continue;
             }
             let (folder, path) = (&*file.folder, &file.path);
-            match read_beside(world, folder, path) {
-                Ok(bytes) => {
+            let beside = folders
+                .entry(folder)
+                .or_insert_with(|| Beside::new(world, folder, graph.allow_outside));
+            match beside.read(path) {
+                Ok((place, bytes)) => {
+                    places.push(place);
                     let contents = FileContents {
                         path: path.clone(),
                         bytes: bytes.into(),
@@ -166,7 +193,8 @@ fn read_files(
                     .used_by(node.origin.uses.clone())
                     .in_node(&*node.name)
                     .hint(format!(
-                        "files are looked for in `{0}`, in `{0}/assets` and in `{0}/../assets`",
+                        "files are looked for in `{0}`, in `{0}/assets` and in `{0}/../assets`; links out of \
+                         these are followed with `--allow-outside` only",
                         shown(folder)
                     )),
                 ),
@@ -174,28 +202,10 @@ fn read_files(
         }
     }
     if errors.is_empty() {
-        Ok(files)
+        Ok(ReadFiles { files, places })
     } else {
         Err(RunError::Files(errors))
     }
-}
-
-/// Reads a file that a recipe names: beside it, from the assets in its folder, or from those beside its
-/// folder, whichever comes first.
-fn read_beside(world: &dyn World, folder: &Path, path: &Path) -> io::Result<Vec<u8>> {
-    let places = [
-        folder.join(path),
-        folder.join("assets").join(path),
-        folder.join("../assets").join(path),
-    ];
-    let mut missing = io::Error::from(io::ErrorKind::NotFound);
-    for place in places {
-        match world.read(&place) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => missing = error,
-            read => return read,
-        }
-    }
-    Err(missing)
 }
 
 /// The folder as a person would write it.

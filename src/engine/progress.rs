@@ -69,12 +69,7 @@ impl Count {
     }
 
     /// Begins to paint `painted` maps; `found` others need not be painted after all.
-    pub(super) fn begin(
-        &mut self,
-        output: &str,
-        [painted, found]: [usize; 2],
-        pixels: [u32; 2],
-    ) {
+    pub(super) fn begin(&mut self, output: &str, [painted, found]: [usize; 2], pixels: [u32; 2]) {
         self.work -= work(found, pixels);
         self.work_done += self.work_of_output;
         self.work_of_output = work(painted, pixels);

@@ -73,11 +73,12 @@ impl Engine {
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
         let plan = self.plan(request.graph, &wanted)?;
-        let outputs = self.outputs(request, &plan, &wanted);
+        let protected = files::Protected::new(&*self.world, &plan, self.options.store.as_deref());
+        let outputs = self.outputs(request, &plan, &protected, &wanted);
         let known: Vec<Option<KnownOutput>> = outputs.iter().map(Output::known).collect();
         let missing = outputs.iter().zip(&known).filter(|(_, it)| it.is_none());
         let missing: Vec<NodeIndex> = missing.map(|(output, _)| output.index).collect();
-        let rest = self.plan(request.graph, &missing)?;
+        let rest = plan.part(&missing);
         let built = self.build(&rest, request.listener, &request.cancel)?;
         repeat_warnings(known.iter().flatten(), request, &plan, &built);
         let known = known.into_iter().map(|known| Some(known?.maps));
@@ -87,6 +88,12 @@ impl Engine {
             .flat_map(|(output, known)| output.file_names(known.as_deref(), &built))
             .collect();
         files::refuse_shared(request.graph, names.iter().cloned())?;
+        let paths: Vec<_> = names
+            .iter()
+            .map(|(index, name)| (*index, request.folder.join(name)))
+            .collect();
+        let paths = paths.iter().map(|(index, path)| (*index, path.as_path()));
+        protected.refuse(&*self.world, request.graph, paths)?;
         let meter = Meter::new(request.listener);
         for (output, known) in outputs.iter().zip(&known) {
             output.expect(known.as_deref(), &built, &meter)?;
@@ -119,12 +126,14 @@ impl Engine {
         &'a self,
         request: &'a Render<'a>,
         plan: &'a Plan<'a>,
+        protected: &'a files::Protected,
         wanted: &[NodeIndex],
     ) -> Vec<Output<'a>> {
         let output = |index: &NodeIndex| Output {
             engine: self,
             request,
             plan,
+            protected,
             index: *index,
         };
         wanted.iter().map(output).collect()
@@ -160,6 +169,7 @@ pub(super) struct Output<'a> {
     pub(super) engine: &'a Engine,
     pub(super) request: &'a Render<'a>,
     pub(super) plan: &'a Plan<'a>,
+    pub(super) protected: &'a files::Protected,
     pub(super) index: NodeIndex,
 }
 

@@ -2,7 +2,7 @@
 
 use super::composite::default_literal;
 use super::links::Linker;
-use super::literal::{Reader, Slot, parameter_name};
+use super::literal::{Slot, parameter_name};
 use super::names::shown;
 use super::recipe::{key, report_duplicate_name};
 use super::text_literal::TextLiteral;
@@ -93,10 +93,9 @@ impl Linker<'_, '_> {
         let Value::Text(path) = self.reader.literal(tree, slot)? else {
             return None;
         };
-        let path = self.reader.path(&path, tree.span.clone(), slot)?;
         Some(Source::File(NamedFile::beside(
             &self.reader.report.source,
-            path,
+            PathBuf::from(path),
         )))
     }
 
@@ -176,40 +175,6 @@ impl Linker<'_, '_> {
             }
             (_, value) => Source::Literal(value),
         }
-    }
-}
-
-impl Reader<'_> {
-    /// A path below the folder of the file that names it, written the same on every system.
-    pub(super) fn path(&mut self, path: &str, span: Span, slot: Slot<'_>) -> Option<PathBuf> {
-        let reason = if path.is_empty() {
-            "the path is empty"
-        } else if path.starts_with('/') {
-            "the path begins at the root of the disk"
-        } else if path.split('/').any(|part| part == "..") {
-            "the path leaves the folder"
-        } else if path.contains('\\') {
-            "the path has a backslash"
-        } else if path.contains(':') {
-            "the path has a colon"
-        } else if path.contains(char::is_control) {
-            "the path has a control character"
-        } else {
-            return Some(PathBuf::from(path));
-        };
-        let message = format!(
-            "{} must be a file in the folder of the recipe or of its assets, found {}",
-            shown(slot.name),
-            shown(path)
-        );
-        self.refuse(Code::PathOutside, message, span, reason, |error| {
-            error
-                .expected(
-                    "a path below the recipe's folder or its assets",
-                    shown(path),
-                )
-                .hint("write a path such as `photos/bar.png`, with forward slashes")
-        })
     }
 }
 

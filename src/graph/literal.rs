@@ -65,14 +65,16 @@ impl<'c> Reader<'c> {
         if let Shape::Text(text) = &tree.shape
             && let Some(name) = parameter_name(&text.value)
         {
-            return self.parameter(name, tree.span.clone(), slot);
+            let value = self.parameter(name, tree.span.clone(), slot)?;
+            return self.allowed_file(value, tree, slot);
         }
         match slot.value_type {
             Type::Number(_) => self.number(tree, slot).map(Value::Number),
             Type::Whole => self.whole(tree, slot).map(Value::Whole),
             Type::Toggle => self.toggle(tree, slot),
             Type::Choice(names) => self.choice(tree, slot, names),
-            Type::Text | Type::File => self.text(tree, slot).map(Value::Text),
+            Type::Text => self.text_for(tree, slot).map(Value::Text),
+            Type::File => self.file_name(tree, slot).map(Value::Text),
             Type::Colour => self.colour(tree, slot).map(Value::Colour),
             Type::Vector(unit) => {
                 let parts = self.numbers(tree, slot, Type::Number(unit))?;
@@ -268,7 +270,7 @@ impl<'c> Reader<'c> {
     }
 
     /// Text without its first dollar sign if there are two.
-    fn text(&mut self, tree: &Tree, slot: Slot<'_>) -> Option<String> {
+    pub(super) fn text_for(&mut self, tree: &Tree, slot: Slot<'_>) -> Option<String> {
         match &tree.shape {
             Shape::Text(text) if text.value.starts_with("$$") => Some(text.value[1..].to_owned()),
             Shape::Text(text) => Some(text.value.clone()),

@@ -5,7 +5,7 @@ use super::compound::{self, Definition, Library, Slot};
 use super::parameters::Parameters;
 use super::recipe::Role;
 use super::report::Report;
-use super::{Graph, Node, Origin, domains, order, text};
+use super::{Graph, Node, Origin, domains, edit, order, text};
 use crate::diagnostics::{Code, Diagnostic, SourceFile};
 use crate::node::Kind;
 use crate::nodes::KINDS;
@@ -24,6 +24,8 @@ pub struct Settings {
     pub seed: Option<u64>,
     /// Takes the place of the limit on nodes, 200,000 with those inside compounds.
     pub largest_graph: Option<usize>,
+    /// Lets the recipe name files anywhere, and not only below its folder and its assets.
+    pub allow_outside: bool,
 }
 
 /// Nodes of a recipe that uses compounds.
@@ -47,7 +49,8 @@ pub fn load(
     path: &Path,
     settings: &Settings,
 ) -> Result<Loaded, Vec<Diagnostic>> {
-    let bytes = world.read(path).map_err(|error| {
+    // Not more than shows that it is too large, so that nothing endless is read.
+    let bytes = world.read_start(path, text::LARGEST + 1).map_err(|error| {
         let message = format!("`{}` could not be read: {error}", path.display());
         let mut diagnostic = Diagnostic::error(Code::FileNotRead, message);
         diagnostic.source = Some(Arc::new(SourceFile::new(path, "")));
@@ -99,6 +102,7 @@ fn load_source(
     settings: &Settings,
 ) -> Result<Loaded, Vec<Diagnostic>> {
     let mut report = Report::new(source);
+    report.allow_outside = settings.allow_outside;
     let Some(files) = compound::gather(&mut report, library, source) else {
         return Err(report.finish());
     };
@@ -207,6 +211,7 @@ fn graph(
         source: Arc::clone(&file.source),
         about: recipe.about.clone(),
         seed,
+        allow_outside: settings.allow_outside,
         parameters: parameters.finish(),
         outputs: indices(drafts, true).map(|(index, _)| index).collect(),
         by_name: indices(drafts, false)
@@ -305,15 +310,11 @@ pub fn no_output(graph: &Graph) -> Diagnostic {
         diagnostic.source = Some(Arc::clone(&graph.source));
         return diagnostic;
     }
-    let end = graph.source.text.trim_end().len();
+    let (place, label) = edit::outputs_place(&graph.source);
     Diagnostic::error(
         Code::NoOutput,
         "the recipe has no output, so there is nothing to render",
     )
-    .at(
-        &graph.source,
-        end.saturating_sub(1)..end,
-        "`outputs` is missing here",
-    )
+    .at(&graph.source, place, label)
     .hint("add `outputs: { \"name\": maps(of: \"node\") }`")
 }

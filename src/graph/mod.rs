@@ -13,6 +13,7 @@ mod compound;
 mod described;
 mod domains;
 pub mod edit;
+mod file_name;
 mod lexer;
 mod links;
 mod literal;
@@ -51,6 +52,8 @@ pub struct Graph {
     pub about: String,
     /// Mixed into every random stream.
     pub seed: u64,
+    /// Whether files may be read from anywhere, and not only below the recipe's folder.
+    pub allow_outside: bool,
     /// The parameters in the order of the file.
     pub parameters: Vec<Parameter>,
     /// The nodes and the outputs; an edge leads from a node to one that reads it.

@@ -14,6 +14,8 @@ const LIMIT: usize = 2000;
 pub(super) struct Report {
     /// The text that is being looked at.
     pub(super) source: Arc<SourceFile>,
+    /// Whether the caller lets files be anywhere.
+    pub(super) allow_outside: bool,
     /// The use of the compound that is being looked at.
     uses: Option<Arc<Use>>,
     /// Mistakes in compounds: the second use of one has the same.
@@ -27,6 +29,7 @@ impl Report {
     pub(super) fn new(source: &Arc<SourceFile>) -> Report {
         Report {
             source: Arc::clone(source),
+            allow_outside: false,
             uses: None,
             seen: HashSet::new(),
             diagnostics: vec![],
@@ -103,13 +106,13 @@ impl Report {
         !self.seen.insert(mistake)
     }
 
-    /// Leaves out all but the first on each line: what is read behind a mistake is often misread.
+    /// Leaves out all but the first that was found on each line: what is read behind a mistake is often
+    /// misread.
     pub(super) fn keep_first_of_lines(&mut self) {
-        crate::diagnostics::sort(&mut self.diagnostics);
-        let source = &self.source;
-        self.diagnostics.dedup_by_key(|one| {
+        let mut lines = HashSet::new();
+        self.diagnostics.retain(|one| {
             let start = one.label.as_ref().map_or(0, |label| label.span.start);
-            source.line_of(start)
+            lines.insert(self.source.line_of(start))
         });
     }
 

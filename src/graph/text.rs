@@ -8,12 +8,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Bytes of the largest recipe.
-const LARGEST: usize = 16 << 20;
+pub(super) const LARGEST: usize = 16 << 20;
 
 /// The text of a file, if it is UTF-8 and not too large.
 pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<Arc<SourceFile>, Box<Diagnostic>> {
     if bytes.len() > LARGEST {
-        return Err(about_file(path, Code::TooLarge, too_large(bytes.len())).into());
+        return Err(about_file(path, Code::TooLarge, too_large()).into());
     }
     let encoding = match bytes.as_slice() {
         [0xff, 0xfe, ..] | [1..=255, 0, ..] => Some("UTF-16 (little-endian)"),
@@ -36,9 +36,9 @@ pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<Arc<SourceFile>, Box
     }
 }
 
-fn too_large(bytes: usize) -> String {
+fn too_large() -> String {
     let mebibytes = LARGEST >> 20;
-    format!("a recipe has at most {mebibytes} MiB ({LARGEST} bytes), this one has {bytes} bytes")
+    format!("a recipe has at most {mebibytes} MiB ({LARGEST} bytes), this one has more")
 }
 
 fn about_file(path: &Path, code: Code, message: String) -> Diagnostic {
@@ -63,11 +63,7 @@ fn not_utf8(path: &Path, bytes: &[u8], at: usize) -> Diagnostic {
 pub(super) fn read(report: &mut Report) -> Option<Tree> {
     let source = Arc::clone(&report.source);
     if source.text.len() > LARGEST {
-        report.add(about_file(
-            &source.path,
-            Code::TooLarge,
-            too_large(source.text.len()),
-        ));
+        report.add(about_file(&source.path, Code::TooLarge, too_large()));
         return None;
     }
     if let Some(at) = source.text.find('\0') {

@@ -26,6 +26,8 @@ pub struct Failure {
     pub message: String,
     /// The input to blame, if it is one.
     pub input: Option<&'static str>,
+    /// Which item of the input, if it is a list.
+    pub item: Option<usize>,
     /// What to do.
     pub hint: Option<String>,
 }
@@ -36,6 +38,7 @@ impl Failure {
         Failure {
             message: message.into(),
             input: None,
+            item: None,
             hint: None,
         }
     }
@@ -45,8 +48,15 @@ impl Failure {
         Failure {
             message: message.into(),
             input: Some(input),
+            item: None,
             hint: None,
         }
+    }
+
+    /// Blames one item of the input, counted from 0.
+    pub fn at_item(mut self, item: usize) -> Failure {
+        self.item = Some(item);
+        self
     }
 
     /// Adds what to do.

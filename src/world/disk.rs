@@ -21,6 +21,13 @@ impl World for Disk {
         Ok(Box::new(File::open(path)?))
     }
 
+    fn real_path(&self, path: &Path) -> io::Result<PathBuf> {
+        match path.as_os_str().is_empty() {
+            true => fs::canonicalize("."),
+            false => fs::canonicalize(path),
+        }
+    }
+
     fn read_start(&self, path: &Path, length: usize) -> io::Result<Vec<u8>> {
         require_regular(path)?;
         let mut bytes = Vec::new();

@@ -34,6 +34,15 @@ pub trait World: Send + Sync {
         Ok(Box::new(io::Cursor::new(self.read(path)?)))
     }
 
+    /// Where the file or folder at `path` really lies, behind symbolic links; a world without links has
+    /// it where it is.
+    ///
+    /// # Errors
+    /// Whatever the operating system says; a path that leads nowhere is an error as well.
+    fn real_path(&self, path: &Path) -> io::Result<PathBuf> {
+        Ok(path.to_owned())
+    }
+
     /// The first `length` bytes of a file, or all of it if it is shorter.
     ///
     /// # Errors

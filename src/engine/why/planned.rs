@@ -3,6 +3,7 @@
 use super::changes::Changes;
 use super::{Cause, Explained, Fate, ancestors};
 use crate::engine::Engine;
+use crate::engine::files::Protected;
 use crate::engine::known::map_path;
 use crate::engine::look_up::Place;
 use crate::engine::plan::Plan;
@@ -41,7 +42,9 @@ impl<'a> PlannedRun<'a> {
             fate: fate_of(&output, record.is_some()),
             reads: ancestors(plan.graph, &[output.index]),
         };
-        let outputs = engine.outputs(request, plan, chosen);
+        let store = engine.options.store.as_deref();
+        let protected = Protected::new(&*engine.world, plan, store);
+        let outputs = engine.outputs(request, plan, &protected, chosen);
         PlannedRun {
             engine,
             request,

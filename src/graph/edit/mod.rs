@@ -224,6 +224,34 @@ pub fn find(source: &Arc<SourceFile>, place: &Place) -> Result<Option<Span>, Vec
     Ok(slot.value().map(|value| value.span.clone()))
 }
 
+/// The bytes of an item of the list that is written at `span`, if one is.
+pub fn item_span(source: &SourceFile, span: &Span, item: usize) -> Option<Span> {
+    let literal = SourceFile::new(&*source.path, source.text.get(span.clone())?);
+    let tree = read(&Arc::new(literal)).ok()?;
+    let item = &tree.items()?.get(item)?.span;
+    Some(span.start + item.start..span.start + item.end)
+}
+
+/// Where outputs are missing, and what a label says there: the empty braces, or the end of the recipe.
+pub(super) fn outputs_place(source: &Arc<SourceFile>) -> (Span, &'static str) {
+    let nothing = (0..0, "");
+    let Ok(tree) = read(source) else {
+        return nothing;
+    };
+    let finder = Finder {
+        source,
+        root: &tree,
+        kinds: &[],
+    };
+    match finder.section(Section::Outputs) {
+        Ok(Some(braces)) => (braces.span.clone(), "`outputs` is empty"),
+        _ => (
+            tree.span.end - 1..tree.span.end,
+            "`outputs` is missing here",
+        ),
+    }
+}
+
 fn read(source: &Arc<SourceFile>) -> Result<Tree, Vec<Diagnostic>> {
     let mut report = Report::new(source);
     match text::read(&mut report) {

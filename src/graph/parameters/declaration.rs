@@ -113,8 +113,8 @@ impl Declared {
         }
         self.default = value.and_then(|value| match (value_type, value) {
             (Type::File, Value::Text(path)) => {
-                let path = reader.path(&path, tree.span.clone(), slot)?;
-                Some(Source::File(NamedFile::beside(&reader.report.source, path)))
+                let source = &reader.report.source;
+                Some(Source::File(NamedFile::beside(source, path.into())))
             }
             (_, value) => Some(Source::Literal(value)),
         });

@@ -5,8 +5,10 @@ mod types;
 
 pub(super) use declaration::Declared;
 
+use super::described::described_unit;
 use super::literal::{Reader, Slot};
 use super::names::shown;
+use super::number;
 use super::recipe::{Declaration, Role};
 use super::report::Report;
 use super::{Parameter, Source, text};
@@ -135,6 +137,9 @@ impl Parameters {
         let Some(value_type) = declared.value_type else {
             return vec![];
         };
+        if let Some(problem) = refuse_unit(declared, literal) {
+            return vec![problem];
+        }
         let literal = quoted(value_type, literal);
         let source = Arc::new(SourceFile::new(format!("--set {name}"), literal));
         let mut report = Report::new(&source);
@@ -156,6 +161,29 @@ impl Parameters {
         }
         report.finish()
     }
+}
+
+/// The mistake of writing a number with its unit.
+fn refuse_unit(declared: &Declared, literal: &str) -> Option<Diagnostic> {
+    let is_number = |text: &str| number::read(text).is_some();
+    let (number, unit) = literal.trim().split_once([' ', '\t'])?;
+    let (name, unit) = (shown(&declared.name), unit.trim());
+    let may_have_unit = matches!(declared.value_type, Some(Type::Number(_) | Type::Whole));
+    if !may_have_unit || !is_number(number) || unit.starts_with(['/', ',']) {
+        return None;
+    }
+    let wanted = described_unit(declared.unit);
+    let message = format!(
+        "parameter {name} is {wanted}, found {}",
+        shown(literal.trim())
+    );
+    let hint = match unit == declared.unit.symbol() {
+        true => "write the number alone: its unit is known",
+        false => "write the number alone, in the parameter's unit; units are not converted",
+    };
+    let error = Diagnostic::error(Code::UnitMismatch, message);
+    let error = error.expected(format!("a number, {wanted}"), shown(literal.trim()));
+    Some(error.hint(format!("{hint}: `--set {}={number}`", declared.name)))
 }
 
 /// Shells eat quotes: what can only be text gets them back.

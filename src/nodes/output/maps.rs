@@ -33,7 +33,7 @@ pub static KIND: Kind = Kind {
         Input::new(
             "pixels",
             Type::Pair(Unit::Pixel),
-            "Size of the picture, instead of `pixels_per_mm`.",
+            "Size of the picture, instead of `pixels_per_mm`; of another shape than the piece, it is stretched.",
         )
         .optional()
         .range(1.0, LARGEST_SIDE as f64),

@@ -99,7 +99,8 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         .enumerate()
         .map(|(index, item)| {
             branch(item, &curve).map_err(|reason| {
-                Failure::of_input("branches", format!("branch {}: {reason}", index + 1))
+                let message = format!("branch {}: {reason}", index + 1);
+                Failure::of_input("branches", message).at_item(index)
             })
         })
         .collect::<Result<_, _>>()?;

@@ -142,6 +142,7 @@ fn from_tree(inputs: &Inputs<'_>) -> Result<Vec<Value>, Failure> {
         .map_err(|fault| Failure {
             message: fault.message,
             input: Some("tree"),
+            item: None,
             hint: fault.hint,
         })?;
     warnings
