@@ -162,6 +162,10 @@ fn programs_that_would_take_too_much_are_refused() {
         assert!(found.ends_with(of), "{found}");
         assert!(!run.log().contains("tiles"), "{}", run.log());
     }
+    // What cannot vary needs no neighbours.
+    let even = mixes(|_| "= 0.5".into());
+    let run = without_store().render(&even, &[], Cancel::new(), &|_| {});
+    assert!(run.result.is_ok(), "{:?}", run.result);
 }
 
 #[test]
