@@ -69,6 +69,11 @@ fn pixels_to_supersample(scratch: &Scratch, step: &KernelStep, grid: &PixelGrid)
             };
             inside.filter(varies).map(|index| index as u32).collect()
         }
+        Sampling::FilteredWhereEven { column, absolute } => {
+            let values = scratch.column(step.inputs[column]);
+            let changes = |index: &usize| spread::size(values, grid.width, *index) > absolute;
+            inside.filter(changes).map(|index| index as u32).collect()
+        }
         Sampling::FilteredWhereStraight {
             column,
             absolute,
