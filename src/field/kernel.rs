@@ -19,6 +19,14 @@ pub enum Sampling {
         /// Bend that is allowed for each unit of the column's spread.
         relative: f32,
     },
+    /// As `Filtered` where an input hardly changes within a sample; where it changes by more than `absolute`
+    /// (in the input's unit), the engine supersamples. For products of inputs that change together.
+    FilteredWhereEven {
+        /// The input column that has to be even.
+        column: usize,
+        /// Change from one sample to the next that is always allowed, in the column's unit.
+        absolute: f32,
+    },
     /// Not linear (threshold, choice, min): the engine supersamples every sample that varies.
     Supersampled,
 }

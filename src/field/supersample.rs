@@ -80,6 +80,11 @@ fn pixels_to_supersample(
                 .collect();
             dispatch!(level, simd => spread::list_varying(simd, &columns, inside, list));
         }
+        Sampling::FilteredWhereEven { column, absolute } => {
+            let values = scratch.column(step.inputs[column]);
+            let changes = |index: &usize| spread::size(values, grid.width, *index) > absolute;
+            inside.filter(changes).map(|index| index as u32).collect()
+        }
         Sampling::FilteredWhereStraight {
             column,
             absolute,

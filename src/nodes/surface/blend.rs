@@ -4,6 +4,8 @@
 //! that one lacks are 0 or black, unless `missing` says otherwise. Directions are blended as axes, so opposite ones
 //! are the same, and have length 1.
 //!
+//! Where the share changes within a pixel and what is blended does too, the blend is supersampled.
+//!
 //! With `by: height` the higher material wins. Its share is the S of `transition` around 0 over
 //!
 //! ```text
@@ -86,6 +88,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let blended = |(name, [a, b]): (String, [Field; 2])| {
         let is_direction = Material::is_direction(&name, &a);
         let width = a.width();
+        let is_together = [&a, &b].iter().any(|field| field.as_constant().is_none());
         let fields = vec![a, b, share.clone()];
         let field = match is_direction {
             true => build.kernel(channels::Axes, fields),
@@ -93,6 +96,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
                 Mix {
                     mode: "normal",
                     width,
+                    is_together,
                 },
                 fields,
             ),

@@ -43,9 +43,14 @@ pub static KIND: Kind = Kind {
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let mode = inputs.choice("mode");
     let inputs = ["a", "b", "amount"].map(|name| inputs.field(name));
-    Ok(vec![Value::Field(
-        build.kernel(Mix { mode, width: 3 }, inputs.into()),
-    )])
+    Ok(vec![Value::Field(build.kernel(
+        Mix {
+            mode,
+            width: 3,
+            is_together: false,
+        },
+        inputs.into(),
+    ))])
 }
 
 /// What `b` can do; the arithmetic of each is in `blended`.
@@ -91,13 +96,17 @@ pub(super) struct Mix {
     pub(super) mode: &'static str,
     /// Columns of the values that are mixed.
     pub(super) width: usize,
+    /// Whether the values change where the amount does, as they do when materials are blended: then the mean of
+    /// the mix is not the mix of the means.
+    pub(super) is_together: bool,
 }
 
 impl Kernel for Mix {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("mix")
             .whole(i64::from(KIND.version))
-            .text(self.mode);
+            .text(self.mode)
+            .whole(i64::from(self.is_together));
     }
 
     fn width(&self) -> usize {
@@ -107,6 +116,12 @@ impl Kernel for Mix {
     fn sampling(&self) -> Sampling {
         if !["normal", "add"].contains(&self.mode) {
             return Sampling::Supersampled;
+        }
+        if self.is_together {
+            return Sampling::FilteredWhereEven {
+                column: 2 * self.width,
+                absolute: 0.05,
+            };
         }
         Sampling::FilteredWhereStraight {
             column: 2 * self.width,
