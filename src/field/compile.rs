@@ -270,7 +270,8 @@ impl Compiler {
         let varies = |column: &usize| !self.constant_columns.contains(column);
         let needs_samples = match kernel.sampling() {
             Sampling::Filtered => false,
-            Sampling::FilteredWhereStraight { column, .. } => varies(&inputs[column]),
+            Sampling::FilteredWhereEven { column, .. }
+            | Sampling::FilteredWhereStraight { column, .. } => varies(&inputs[column]),
             Sampling::Supersampled => inputs.iter().any(varies),
         };
         self.supersampling && needs_samples

@@ -65,7 +65,8 @@ fn looks_around(step: &KernelStep, input: usize) -> bool {
     step.within.is_some()
         && match step.kernel.sampling() {
             Sampling::Filtered => false,
-            Sampling::FilteredWhereStraight { column, .. } => column == input,
+            Sampling::FilteredWhereEven { column, .. }
+            | Sampling::FilteredWhereStraight { column, .. } => column == input,
             Sampling::Supersampled => true,
         }
 }

@@ -112,6 +112,25 @@ pub(super) fn list_bent<S: Simd>(
     }
 }
 
+/// Lists the samples from which to the next the values change by more than `allowed`.
+#[simd]
+pub(super) fn list_uneven<S: Simd>(
+    simd: S,
+    values: &[f32],
+    inside: &Inside,
+    allowed: f32,
+    list: &mut Vec<u32>,
+) {
+    let width = inside.width;
+    for start in inside.starts(S::f32s::LEN) {
+        let row = (load(simd, values, start + 1) - load(simd, values, start - 1)) * 0.5;
+        let (above, below) = (start - width, start + width);
+        let column = (load(simd, values, below) - load(simd, values, above)) * 0.5;
+        let spread = (row * row + column * column).sqrt();
+        inside.list(start, spread.simd_gt(allowed).to_bitmask(), list);
+    }
+}
+
 /// Lists the samples that differ from any of their neighbours in a row or column, in any of some columns.
 #[simd]
 pub(super) fn list_varying<S: Simd>(
@@ -202,6 +221,12 @@ mod tests {
             height: 9,
             border: 1,
         };
+        let mut uneven = vec![];
+        dispatch!(Level::new(), simd => list_uneven(simd, &values, &inside, 0.5, &mut uneven));
+        assert!(uneven.is_empty());
+        dispatch!(Level::new(), simd => list_uneven(simd, &values, &inside, 0.49, &mut uneven));
+        let beside = [at - width, at - 1, at + 1, at + width].map(|index| index as u32);
+        assert_eq!(uneven, beside);
         let mut varying = vec![];
         let columns = [&values[..]];
         dispatch!(Level::new(), simd => list_varying(simd, &columns, &inside, &mut varying));

@@ -82,8 +82,7 @@ fn pixels_to_supersample(
         }
         Sampling::FilteredWhereEven { column, absolute } => {
             let values = scratch.column(step.inputs[column]);
-            let changes = |index: &usize| spread::size(values, grid.width, *index) > absolute;
-            inside.filter(changes).map(|index| index as u32).collect()
+            dispatch!(level, simd => spread::list_uneven(simd, values, inside, absolute, list));
         }
         Sampling::FilteredWhereStraight {
             column,
