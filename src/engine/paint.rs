@@ -5,6 +5,7 @@
 
 use super::event::{Event, Listener};
 use super::{Cancel, Options, RunError};
+use crate::diagnostics::{Code, Diagnostic};
 use crate::field::{Field, PixelGrid, Program, RunContext, Samples, Scratch, Target, Work};
 use crate::output::{Encoder, Faults, MapWriter};
 use rayon::prelude::*;
@@ -48,6 +49,9 @@ struct Painted {
 /// Bands of tiles, each from left to right.
 type Window = Vec<Vec<Painted>>;
 
+/// Pixels around a tile that fields may need.
+const LARGEST_MARGIN: usize = 256;
+
 impl Painter<'_> {
     /// Paints all sheets.
     ///
@@ -58,6 +62,9 @@ impl Painter<'_> {
         let encoders: Vec<Encoder> = sheets.iter().map(|sheet| sheet.encoder).collect();
         let program = Program::compile(&fields);
         let scratches = Mutex::new(vec![]);
+        if program.margin() > LARGEST_MARGIN {
+            return Err(PaintError::TooWide(program.margin()));
+        }
         let windows = self.windows();
         let total = windows.iter().flatten().map(Vec::len).sum();
         let mut tally = Tally::default();
@@ -183,10 +190,23 @@ impl Painter<'_> {
     }
 }
 
+/// Nodes that look at neighbours of neighbours: a chain so long that no computer could hold the tiles.
+fn too_wide(found: usize) -> Diagnostic {
+    let message = format!(
+        "a pixel would depend on {found} pixels around it: too many nodes that are not straight follow each \
+         other"
+    );
+    Diagnostic::error(Code::TooMuch, message)
+        .expected(format!("at most {LARGEST_MARGIN}"), found)
+        .hint("make fewer nodes out of the long chain, or make what decides in them constant")
+}
+
 /// Why painting stopped.
 pub(super) enum PaintError {
     Cancelled,
     Files(io::Error),
+    /// Pixels around a tile that the fields would need.
+    TooWide(usize),
 }
 
 impl From<io::Error> for PaintError {
@@ -200,6 +220,7 @@ impl From<PaintError> for RunError {
         match error {
             PaintError::Cancelled => RunError::Cancelled,
             PaintError::Files(error) => RunError::not_written(&error),
+            PaintError::TooWide(found) => RunError::Limit(vec![too_wide(found)]),
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use super::{Field, Kernel, Operation, Sampling};
 use crate::key::{Key, KeyHasher};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, OnceLock};
 
 /// A linear list of column operations that gives the columns of some fields.
@@ -108,6 +108,7 @@ struct Compiler {
     spread_of: HashMap<usize, [usize; 2]>,
     constant_of: HashMap<u32, usize>,
     constants: Vec<(usize, f32)>,
+    constant_columns: HashSet<usize>,
     steps: Vec<Step>,
     columns: usize,
 }
@@ -127,6 +128,7 @@ impl Compiler {
             spread_of: HashMap::new(),
             constant_of: HashMap::new(),
             constants: Vec::new(),
+            constant_columns: HashSet::new(),
             steps: Vec::new(),
             columns: POSITION.len(),
         }
@@ -257,7 +259,7 @@ impl Compiler {
             .collect();
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
         let within =
-            (self.supersampling && kernel.sampling() != Sampling::Filtered).then(|| Within {
+            (self.supersampling && self.may_bend(kernel.sampling(), &inputs)).then(|| Within {
                 field: self.seen_from_root(field, place),
                 program: OnceLock::new(),
             });
@@ -277,6 +279,17 @@ impl Compiler {
         };
         self.steps.push(Step::Kernel(Box::new(step)));
         outputs
+    }
+
+    /// Whether there can be samples that a kernel does not filter well: what decides on it may vary. If it
+    /// is constant, no neighbours are looked at, and long chains need no wide margin.
+    fn may_bend(&self, sampling: Sampling, inputs: &[usize]) -> bool {
+        let varies = |column: &usize| !self.constant_columns.contains(column);
+        match sampling {
+            Sampling::Filtered => false,
+            Sampling::Supersampled => inputs.iter().any(varies),
+            Sampling::FilteredWhereStraight { column, .. } => varies(&inputs[column]),
+        }
     }
 
     /// The field as seen from the samples' own positions.
@@ -306,6 +319,7 @@ impl Compiler {
         let column = self.new_column();
         self.constant_of.insert(value.to_bits(), column);
         self.constants.push((column, value));
+        self.constant_columns.insert(column);
         column
     }
 
