@@ -273,7 +273,8 @@ impl Resolver<'_> {
                 Some(self.built.structure(link.node)?.values[link.output].clone())
             }
             Source::Arithmetic(expression) => {
-                if !links_are_built(expression, self.built) {
+                let is_built = |link: &Link| self.built.structure(link.node).is_some();
+                if !source.links().iter().all(is_built) {
                     return None;
                 }
                 if let Some(number) = expression.constant(&|link| self.number(link)) {
@@ -330,19 +331,6 @@ impl Resolver<'_> {
             }
         }
         key.finish()
-    }
-}
-
-fn links_are_built(arithmetic: &crate::graph::Arithmetic, built: &Built) -> bool {
-    use crate::graph::Arithmetic;
-    match arithmetic {
-        Arithmetic::Number(_) => true,
-        Arithmetic::Link(link) => built.structure(link.node).is_some(),
-        Arithmetic::Negate(inner) => links_are_built(inner, built),
-        Arithmetic::Binary(_, sides) => sides.iter().all(|side| links_are_built(side, built)),
-        Arithmetic::Call(_, arguments) => arguments
-            .iter()
-            .all(|argument| links_are_built(argument, built)),
     }
 }
 

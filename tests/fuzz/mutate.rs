@@ -80,16 +80,16 @@ const PIECES: &[&str] = &[
 
 /// Random numbers that are the same on every machine: SplitMix64 (Steele, Lea & Flood 2014).
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
     /// Starts at `seed`.
-    pub fn new(seed: u64) -> Random {
+    pub(crate) fn new(seed: u64) -> Random {
         Random(seed)
     }
 
     /// The next 64 bits.
-    pub fn bits(&mut self) -> u64 {
+    pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -98,7 +98,7 @@ impl Random {
     }
 
     /// A number below `end`, 0 if `end` is 0.
-    pub fn below(&mut self, end: usize) -> usize {
+    pub(crate) fn below(&mut self, end: usize) -> usize {
         if end == 0 {
             0
         } else {
@@ -107,20 +107,20 @@ impl Random {
     }
 
     /// One of `items`.
-    pub fn pick<'i, T: ?Sized>(&mut self, items: &[&'i T]) -> &'i T {
+    pub(crate) fn pick<'i, T: ?Sized>(&mut self, items: &[&'i T]) -> &'i T {
         items[self.below(items.len())]
     }
 }
 
 /// Texts to begin with, cut into tokens.
 #[derive(Debug)]
-pub struct Corpus {
+pub(crate) struct Corpus {
     texts: Vec<Vec<String>>,
 }
 
 impl Corpus {
     /// From whole texts; none may be empty.
-    pub fn new<'t>(texts: impl IntoIterator<Item = &'t str>) -> Corpus {
+    pub(crate) fn new<'t>(texts: impl IntoIterator<Item = &'t str>) -> Corpus {
         let texts = texts
             .into_iter()
             .map(tokens)
@@ -131,7 +131,7 @@ impl Corpus {
     }
 
     /// A text with up to six changes, and half of the time none.
-    pub fn text(&self, random: &mut Random) -> String {
+    pub(crate) fn text(&self, random: &mut Random) -> String {
         let mut tokens = self.texts[random.below(self.texts.len())].clone();
         for _ in 0..random.below(4) * random.below(3) {
             self.change(&mut tokens, random);

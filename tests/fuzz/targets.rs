@@ -8,13 +8,13 @@ use yosegi::graph::{Settings, load_text};
 use yosegi::nodes::KINDS;
 
 /// A way to use a text, whether it was accepted; it panics if something is wrong.
-pub type Target = fn(&str, u64) -> bool;
+pub(crate) type Target = fn(&str, u64) -> bool;
 
 /// The targets by name.
-pub const TARGETS: [(&str, Target); 2] = [("reader", reader), ("edit", edit)];
+pub(crate) const TARGETS: [(&str, Target); 2] = [("reader", reader), ("edit", edit)];
 
 /// Loads the text; whatever is wrong with it can be printed in every way.
-pub fn reader(text: &str, _: u64) -> bool {
+pub(crate) fn reader(text: &str, _: u64) -> bool {
     let Err(diagnostics) = load_text("a.ron", text, &Settings::default()) else {
         return true;
     };
@@ -52,7 +52,7 @@ const LITERALS: [&str; 14] = [
 ];
 
 /// Edits the text; an edit that is made can be found again, and nothing else has changed.
-pub fn edit(text: &str, seed: u64) -> bool {
+pub(crate) fn edit(text: &str, seed: u64) -> bool {
     let mut random = Random::new(seed);
     let source = Arc::new(SourceFile::new("a.ron", text));
     let names = Names::of(text);

@@ -20,6 +20,7 @@
 //! ```
 
 mod layout;
+mod literal;
 mod place;
 mod references;
 mod rename;

@@ -124,10 +124,8 @@ fn words(text: &str) -> Vec<(Span, bool)> {
         let word = &word[..length];
         if letter == '$' {
             found.push((start..start + length, true));
-        } else if letter.is_alphabetic() || letter == '_' {
-            if !rest.starts_with('(') {
-                found.push((start..start + node_length(word), false));
-            }
+        } else if (letter.is_alphabetic() || letter == '_') && !rest.starts_with('(') {
+            found.push((start..start + node_length(word), false));
         }
         at = if belongs(letter) || letter == '$' {
             start + length

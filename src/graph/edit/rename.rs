@@ -1,6 +1,7 @@
 //! Renaming, and what refers to a name.
 
-use super::place::{Finder, Problem, entries, key, problem, quoted};
+use super::literal::quoted;
+use super::place::{Finder, Problem, entries, key, problem};
 use super::references::{self, Reference};
 use super::{Change, Section};
 use crate::diagnostics::{Code, Diagnostic};
