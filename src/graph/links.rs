@@ -260,8 +260,8 @@ fn conversion(given: Unit) -> &'static str {
             "arithmetic without units such as `\"= 2 * node.output\"` is in the input's unit"
         }
         _ => {
-            "units are not converted; multiply or divide by a parameter that has a unit, in \
-             arithmetic such as `\"= $scale * node.output\"`"
+            "units are not converted; multiply or divide by a number with a unit, in arithmetic such as \
+             `\"= node.output / 20 mm\"` or `\"= 3 mm/year * node.output\"`"
         }
     }
 }

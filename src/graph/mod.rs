@@ -31,7 +31,7 @@ mod text;
 mod text_literal;
 mod tree;
 
-pub use compound::{Compound, compounds};
+pub use compound::{Compound, compounds, kinds};
 pub use load::{Loaded, Settings, load, load_text, load_text_with, no_output};
 pub use origin::Origin;
 

@@ -65,7 +65,14 @@ impl Kind {
 
     /// Whether it repeats on request: such kinds have an input `period`, a length or one for each axis.
     pub fn repeats(&self) -> bool {
-        self.input("period").is_some()
+        use Unit::Millimetre;
+        let lengths = [
+            Type::Number(Millimetre),
+            Type::Pair(Millimetre),
+            Type::Vector(Millimetre),
+        ];
+        self.input("period")
+            .is_some_and(|(_, input)| lengths.contains(&input.value_type))
     }
 
     /// Whether its outputs are structures: built once, cached and stored.

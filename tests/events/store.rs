@@ -184,7 +184,12 @@ fn maps_of_every_format_are_up_to_date_the_second_time() {
         );
         let name = format!("board_base_color.{}", format.extension());
         assert!(workshop.run(&recipe).ends_with(&format!("written {name}")));
-        assert_eq!(workshop.run(&recipe), format!("up to date {name}"));
+        // The maps of the other formats are still there, and are told to be stale.
+        assert!(
+            workshop
+                .run(&recipe)
+                .ends_with(&format!("up to date {name}"))
+        );
     }
 }
 

@@ -18,7 +18,7 @@ const RECIPE: &str = r##"(
     nodes: {
         "tree": skeleton_from_file(tree: "tree.csv"),
         "time": growth_field(skeleton: "tree", elongation: 300, thickening: 3),
-        "wood": material(base_color: "#c8a06e", height: "= 0.01 * time"),
+        "wood": material(base_color: "#c8a06e", height: "= 0.01 mm/year * time"),
         "plank": slice_cut(of: "wood", cut: quarter_sawn, origin: (0, 0, 600), size: (120, 100)),
         "plain": material(base_color: "#808080"),
         "board": slice_cut(of: "plain", cut: quarter_sawn, origin: (0, 0, 600), size: (120, 100)),
@@ -56,7 +56,7 @@ fn warnings_come_with_every_run() {
     assert_eq!(warnings(&workshop, RECIPE), expected);
     // Another process, which has the skeleton from the store because the output is another one.
     let other = workshop.another(with_store());
-    let edited = RECIPE.replace("0.01 * time", "0.02 * time");
+    let edited = RECIPE.replace("0.01 mm/year * time", "0.02 mm/year * time");
     assert_eq!(warnings(&other, &edited), expected);
     // A new name, under which nothing runs again.
     let renamed = edited.replace("\"tree\"", "\"oak\"");

@@ -97,6 +97,9 @@ fn errors(fine: &[f32], coarse: &[f32]) -> [f64; 3] {
     [moment(&apart, 1), moment(&apart, 2).sqrt(), deviation]
 }
 
+/// What 32-bit floats about 1 may differ by where nothing varies.
+const ROUNDING: f64 = 1e-6;
+
 /// Checks a field at pixels of some sizes; says whether any column of it varies.
 fn keeps_its_means(kind: &Kind, sampled: &SampledField) -> bool {
     let mut varies = false;
@@ -106,7 +109,7 @@ fn keeps_its_means(kind: &Kind, sampled: &SampledField) -> bool {
         for ((fine, coarse), name) in fine.iter().zip(&coarse).zip(&sampled.columns) {
             let [mean, root, deviation] = errors(fine, coarse);
             assert!(
-                mean.abs() <= 0.02 * deviation && root <= 0.12 * deviation,
+                mean.abs() <= 0.02 * deviation + ROUNDING && root <= 0.12 * deviation + ROUNDING,
                 "`{}`: {name} in pixels of {side} mm is {mean} too much, with errors of {root}, of {deviation}",
                 kind.name
             );

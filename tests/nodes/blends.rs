@@ -96,7 +96,7 @@ fn what_cannot_be_blended_is_refused() {
         ", missing: {\"age\": (1, 0, 0)}",
         "the channel `age` is a number in `a` and a colour in `b`",
     );
-    let pieces = "\"wood\": material(base_color: \"#c8a06e\", extras: {\"x\": \"= place.x\"}), \"place\": position(),
+    let pieces = "\"wood\": material(base_color: \"#c8a06e\", extras: {\"x\": \"= place.x / 1 mm\"}), \"place\": position(),
         \"a\": slice_cut(of: \"wood\", cut: end_grain, origin: (0, 0, 1), size: (10, 20)),
         \"b\": slice_cut(of: \"wood\", cut: end_grain, origin: (0, 0, 1), size: (10, 30)),
         \"example\": blend(a: \"a\", b: \"b\")";

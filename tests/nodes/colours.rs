@@ -74,7 +74,7 @@ fn adjustments_change_what_they_say_and_nothing_else() {
 #[test]
 fn adjustments_and_modes_of_what_varies_keep_the_contract() {
     let edges = "\"place\": position(),
-        \"stripes\": ramp(value: \"= (place.x + 0.2 * place.y) / 9.7\", ends: repeat, curve: step, stops: [
+        \"stripes\": ramp(value: \"= (place.x + 0.2 * place.y) / 9.7 mm\", ends: repeat, curve: step, stops: [
             (at: 0, colour: \"#ff3333\"), (at: 0.35, colour: \"#111111\"), (at: 0.6, colour: \"#22dd88\")])";
     let strong = field(
         &format!(
@@ -85,7 +85,7 @@ fn adjustments_and_modes_of_what_varies_keep_the_contract() {
     keeps_the_contract("adjust_colour", &strong, 64.0, 1.0);
     let product = field(
         &format!(
-            "{edges}, \"other\": ramp(value: \"= (place.x - place.y) / 13\", ends: repeat, curve: step, stops: [
+            "{edges}, \"other\": ramp(value: \"= (place.x - place.y) / 13 mm\", ends: repeat, curve: step, stops: [
                 (at: 0, colour: \"#ffffff\"), (at: 0.5, colour: \"#002244\")]),
             \"example\": mix(a: \"stripes\", b: \"other\", amount: 0.8, mode: multiply)"
         ),

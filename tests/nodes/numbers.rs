@@ -34,7 +34,7 @@ fn nearly(found: &[f32], expected: &[f32]) {
 fn remap_has_its_values_at_and_beyond_its_ends() {
     let remap = |rest: &str| {
         values(
-            &format!("remap(value: \"= place.x\", to: (10, 20){rest})"),
+            &format!("remap(value: \"= place.x / 1 mm\", to: (10, 20){rest})"),
             "value",
         )
     };
@@ -54,7 +54,7 @@ fn remap_has_its_values_at_and_beyond_its_ends() {
 fn a_threshold_is_half_at_its_edge() {
     let threshold = |rest: &str| {
         values(
-            &format!("threshold(value: \"= place.x\", edge: 0.25{rest})"),
+            &format!("threshold(value: \"= place.x / 1 mm\", edge: 0.25{rest})"),
             "mask",
         )
     };
@@ -70,7 +70,7 @@ fn a_threshold_is_half_at_its_edge() {
 fn a_hard_edge_covers_pixels_by_their_area() {
     // x + y / 2 over pixels of 1 mm: an edge at 8.3 crosses them askew.
     let mask = field(
-        &over_x("threshold(value: \"= place.u + place.v / 2\", edge: 8.3)"),
+        &over_x("threshold(value: \"= (place.u + place.v / 2) / 1 mm\", edge: 8.3)"),
         "mask",
     );
     let square = |pixels| Square { side: 64.0, pixels };
@@ -99,7 +99,7 @@ fn stops_of_a_ramp_are_met_and_its_ends_hold_or_repeat() {
     let ramp = |rest: &str| {
         let stops = "[(at: 0, value: 2), (at: 0.5, value: 4), (at: 1, value: 1)]";
         values(
-            &format!("ramp(value: \"= place.x\", stops: {stops}{rest})"),
+            &format!("ramp(value: \"= place.x / 1 mm\", stops: {stops}{rest})"),
             "value",
         )
     };
@@ -122,7 +122,7 @@ fn a_monotone_ramp_does_not_overshoot_and_is_exact_on_lines() {
         .map(|i| [f64::from(i) / 400.0, 0.0, 0.0])
         .collect();
     let at_points = |stops: &str| {
-        let node = format!("ramp(value: \"= place.x\", curve: monotone, stops: {stops})");
+        let node = format!("ramp(value: \"= place.x / 1 mm\", curve: monotone, stops: {stops})");
         number(&field(&over_x(&node), "value"), &points)
     };
     let steps = at_points(
@@ -146,7 +146,7 @@ fn a_monotone_ramp_does_not_overshoot_and_is_exact_on_lines() {
 fn two_stops_at_one_place_are_an_edge_also_at_the_ends() {
     let ramp = |stops: &str| {
         values(
-            &format!("ramp(value: \"= place.x\", stops: {stops})"),
+            &format!("ramp(value: \"= place.x / 1 mm\", stops: {stops})"),
             "value",
         )
     };
@@ -161,7 +161,7 @@ fn two_stops_at_one_place_are_an_edge_also_at_the_ends() {
 fn functions_have_their_values() {
     let math = |operation: &str, b: f64| {
         values(
-            &format!("math(operation: {operation}, a: \"= place.x\", b: {b})"),
+            &format!("math(operation: {operation}, a: \"= place.x / 1 mm\", b: {b})"),
             "value",
         )
     };
@@ -178,7 +178,7 @@ fn functions_have_their_values() {
 #[test]
 fn parts_combine_and_separate() {
     let nodes =
-        "\"place\": position(), \"v\": combine(x: \"= place.x\", y: 4, z: \"= 3 * place.z\"),
+        "\"place\": position(), \"v\": combine(x: \"= place.x / 1 mm\", y: 4, z: \"= 3 * place.z / 1 mm\"),
         \"example\": separate(vector: \"v.vector\")";
     let points = [[2.0, 0.0, 1.0], [0.0, 9.0, -1.0]];
     let part = |name: &str| number(&field(nodes, name), &points);
@@ -267,7 +267,7 @@ fn profiles_of_noise_and_of_fine_waves_keep_the_contract() {
         field(
             &format!(
                 "\"place\": position(), \"example\": {}",
-                node.replace("noise", "= (place.x + 0.3 * place.y) / 2.3")
+                node.replace("noise", "= (place.x + 0.3 * place.y) / 2.3 mm")
             ),
             output,
         )

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use yosegi::node::{Build, Inputs};
 use yosegi::value::{Domain, Material, Value};
 
-const SOURCE: &str = "\"place\": position(), \"height\": remap(value: \"= place.x + 10 * place.y + 100 * place.z\", beyond: extend)";
+const SOURCE: &str = "\"place\": position(), \"height\": remap(value: \"= (place.x + 10 * place.y + 100 * place.z) / 1 mm\", beyond: extend)";
 
 fn moved(rest: &str, point: [f64; 3]) -> f32 {
     let nodes = format!("{SOURCE}, \"example\": transform_field(value: \"height\"{rest})");
@@ -188,7 +188,7 @@ fn what_leaves_nothing_or_leads_out_of_the_plane_is_refused() {
 #[test]
 fn transformed_fields_keep_the_contract() {
     let nodes = "\"place\": position(),
-        \"stripes\": ramp(value: \"= (place.x + 0.2 * place.y) / 9.7\", ends: repeat, curve: step, stops: [
+        \"stripes\": ramp(value: \"= (place.x + 0.2 * place.y) / 9.7 mm\", ends: repeat, curve: step, stops: [
             (at: 0, colour: \"#ff3333\"), (at: 0.35, colour: \"#111111\"), (at: 0.6, colour: \"#22dd88\")]),
         \"example\": transform_field(colour: \"stripes\", turn: (10, 20, 55), scale: (0.4, 2, 1), move: (3, 4, 5))";
     keeps_the_contract("transform_field", &field(nodes, "colour"), 64.0, 1.0);

@@ -8,8 +8,7 @@ use crate::graph::names::{shown, shown_letter};
 use crate::value::Unit;
 
 /// How to get from one unit to another.
-const CONVERSION: &str =
-    "units are not converted; multiply or divide by a parameter that has a unit";
+const CONVERSION: &str = "units are not converted; multiply or divide by a number or a parameter with a unit, such as `20 mm` or `3 mm/year`";
 
 impl Parser<'_, '_, '_> {
     /// The place in the recipe of bytes of the text; the whole literal if it is written with escapes.

@@ -11,11 +11,12 @@
 //!
 //! **Units.** `*` and `/` multiply and divide units, `sqrt` takes the root of the unit; `+`, `-`, `min`,
 //! `max`, `clamp`, and the first two of `mix` need one unit, which is that of the result; the amount of
-//! `mix` is a plain number, and so is `luminance`. Numbers that are written out, and what is made of them
-//! alone, take the unit of what they are added to or compared with; in products they are plain. The
+//! `mix` is a plain number, and so is `luminance`. A written number may have a unit behind it, `20 mm` or
+//! `3 mm/year`. One without, and what is made of such alone, takes the unit of what it is added to or
+//! compared with; in products it is plain. The
 //! whole has to have the unit of its input; if no unit occurs in it anywhere, it is taken to be in the
 //! unit of the input: `"= 0.05 * look.position"` is a height in mm. Units are never converted: to get
-//! from years to millimetres, multiply by a parameter in mm/year.
+//! from years to millimetres, multiply by a rate: `"= 3 mm/year * time"`.
 //!
 //! **Results** have to be finite. The square root of a negative number is 0.
 
@@ -24,6 +25,8 @@ mod fold;
 mod mistakes;
 mod units;
 mod words;
+
+pub(super) use units::written_unit;
 
 use super::links::Linker;
 use super::literal::{Reader, Slot};

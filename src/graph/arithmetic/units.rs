@@ -145,6 +145,19 @@ fn exponents(unit: Unit) -> [f64; 4] {
     }
 }
 
+/// The unit behind a written number, and the bytes up to its end: `mm`, or `mm/year` without spaces.
+pub(in crate::graph) fn written_unit(rest: &str) -> Option<(Unit, usize)> {
+    let trimmed = rest.trim_start();
+    let belongs = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '.';
+    let found = Unit::ALL.into_iter().filter(|unit| {
+        let behind = trimmed.strip_prefix(unit.symbol());
+        *unit != Unit::One && behind.is_some_and(|behind| !behind.starts_with(belongs))
+    });
+    // Of `mm` and `mm/year` the longer one is meant.
+    let unit = found.max_by_key(|unit| unit.symbol().len())?;
+    Some((unit, rest.len() - trimmed.len() + unit.symbol().len()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -186,5 +199,16 @@ mod tests {
         assert_eq!(mm.and(mm), Some(mm));
         assert_eq!(mm.and(year), None);
         assert_eq!(mm.and(plain), None);
+    }
+
+    #[test]
+    fn numbers_may_have_a_unit_behind_them() {
+        assert_eq!(written_unit(" mm + x"), Some((Unit::Millimetre, 3)));
+        assert_eq!(written_unit("mm/year"), Some((Unit::MillimetrePerYear, 7)));
+        assert_eq!(written_unit(" mm / year"), Some((Unit::Millimetre, 3)));
+        assert_eq!(written_unit(" px/mmx"), Some((Unit::Pixel, 3)));
+        for other in ["", " * mm", " mmm", " mm.x", " 1", "metre"] {
+            assert_eq!(written_unit(other), None, "{other}");
+        }
     }
 }

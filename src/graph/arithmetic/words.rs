@@ -1,5 +1,6 @@
 //! The words of arithmetic: numbers, parameters and links.
 
+use super::units::written_unit;
 use super::{Context, PASSED, Parser, Part, Quantity};
 use crate::diagnostics::{Code, Span};
 use crate::graph::literal::Slot;
@@ -8,6 +9,7 @@ use crate::graph::{Arithmetic, Function, Source};
 use crate::value::{Type, Unit, Value};
 
 impl Parser<'_, '_, '_> {
+    /// A number, perhaps with its unit: `20 mm`.
     pub(super) fn number(&mut self) -> Option<Part> {
         let bytes = &self.text.value.as_bytes()[self.at..];
         let belongs = |at: &usize| match bytes[*at] {
@@ -19,7 +21,16 @@ impl Parser<'_, '_, '_> {
         self.at = range.end;
         let written = &self.text.value[range.clone()];
         match written.parse::<f64>() {
-            Ok(number) => self.part(Arithmetic::Number(number), 0, Quantity::WRITTEN, range),
+            Ok(number) => {
+                let rest = &self.text.value[range.end..];
+                let (quantity, length) = match written_unit(rest) {
+                    Some((unit, length)) => (Quantity::of(unit), length),
+                    None => (Quantity::WRITTEN, 0),
+                };
+                self.at += length;
+                let bytes = range.start..self.at;
+                self.part(Arithmetic::Number(number), 0, quantity, bytes)
+            }
             Err(_) => {
                 let message = format!("{} is not a number", shown(written));
                 self.refuse(message, range, "not a number")

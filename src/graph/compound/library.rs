@@ -252,6 +252,17 @@ pub struct Compound {
     pub path: PathBuf,
 }
 
+/// Every kind that recipes in `folder` can use: those written in Rust, then the compounds.
+pub fn kinds(world: &dyn World, folder: &Path) -> Vec<&'static Kind> {
+    let compounds = compounds(world, folder);
+    let compounds = compounds.iter().map(|compound| compound.kind);
+    crate::nodes::KINDS
+        .iter()
+        .copied()
+        .chain(compounds)
+        .collect()
+}
+
 /// The compounds that recipes in `folder` can use, by name; those with mistakes are left out.
 pub fn compounds(world: &dyn World, folder: &Path) -> Vec<Compound> {
     let library = Library::new(crate::nodes::KINDS, world, folder);

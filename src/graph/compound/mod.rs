@@ -13,7 +13,7 @@ mod library;
 pub(super) use definition::{Definition, define};
 pub(super) use interface::{inputs_kind, stand_in};
 pub(super) use layout::{Layout, Slot};
-pub use library::{Compound, compounds};
+pub use library::{Compound, compounds, kinds};
 pub(super) use library::{File, Library, gather};
 
 /// Compounds inside compounds.

@@ -1,6 +1,7 @@
 //! Where a recipe refers to nodes and parameters: links, `$names`, and both within arithmetic.
 
 use crate::diagnostics::Span;
+use crate::graph::arithmetic::written_unit;
 use crate::graph::literal::parameter_name;
 use crate::graph::text_literal::TextLiteral;
 use crate::graph::tree::{Field, Shape, Tree};
@@ -132,6 +133,9 @@ fn words(text: &str) -> Vec<(Span, bool)> {
         } else {
             start + letter.len_utf8()
         };
+        if letter.is_ascii_digit() || letter == '.' {
+            at += written_unit(&text[at..]).map_or(0, |(_, length)| length);
+        }
     }
     found
 }
@@ -142,7 +146,7 @@ mod tests {
 
     #[test]
     fn words_of_arithmetic_are_nodes_and_parameters() {
-        let text = "= 2e3 * look.position + max($w, a_1) - .5*$look - luminance( max.colour )";
+        let text = "= 2e3 mm * look.position + max($w, a_1) - .5*$look - luminance( max.colour )";
         let found: Vec<_> = words(text)
             .into_iter()
             .map(|(bytes, is_parameter)| (&text[bytes], is_parameter))

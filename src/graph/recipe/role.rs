@@ -56,11 +56,30 @@ impl Role {
     }
 }
 
-/// What a file says it is: only compounds have inputs or a version.
+/// What a file says it is: only compounds have inputs, or a version and outputs that are links.
 pub(in crate::graph) fn role_of(tree: &Tree) -> Role {
-    let is_own = |field: &Field| matches!(field.name.text.as_str(), "inputs" | "version");
-    match &tree.shape {
-        Shape::Record(None, fields) if fields.iter().any(is_own) => Role::Compound,
-        _ => Role::Recipe,
+    let Shape::Record(None, fields) = &tree.shape else {
+        return Role::Recipe;
+    };
+    let has = |name: &str| fields.iter().any(|field| field.name.text == name);
+    if has("inputs") || has("version") && fields.iter().any(holds_links) {
+        Role::Compound
+    } else {
+        Role::Recipe
+    }
+}
+
+/// Whether it is the field `outputs` of a compound.
+fn holds_links(field: &Field) -> bool {
+    let is_link = |tree: &Tree| match &tree.shape {
+        Shape::Text(_) => true,
+        Shape::Record(Some(word), _) => word.text == "output",
+        _ => false,
+    };
+    match &field.value.shape {
+        Shape::Map(entries) if field.name.text == "outputs" => {
+            entries.iter().any(|entry| is_link(&entry.value))
+        }
+        _ => false,
     }
 }

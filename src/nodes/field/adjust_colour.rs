@@ -29,7 +29,11 @@ pub static KIND: Kind = Kind {
         ),
     ],
     outputs: &[Output::field("colour", Type::Colour, "The changed colour.")],
-    example: r##"(nodes: { "example": adjust_colour(colour: "#c8a06e", hue: -8, saturation: 1.2, brightness: 0.8) })"##,
+    example: r##"(nodes: {
+    "clouds": solid_noise(size: (40, 40, 200)),
+    "wood": mix(a: "#e8c79a", b: "#a9763f", amount: "= 0.5 + 0.4 * clouds"),
+    "example": adjust_colour(colour: "wood", hue: -8, saturation: 1.2, brightness: 0.8),
+})"##,
     build,
 };
 

@@ -50,7 +50,7 @@ pub static KIND: Kind = Kind {
     )],
     example: r#"(nodes: {
     "place": position(),
-    "example": math(operation: sine, a: "= place.x / 20"),
+    "example": math(operation: sine, a: "= place.x / 20 mm"),
 })"#,
     build,
 };

@@ -63,7 +63,7 @@ pub static KIND: Kind = Kind {
     ],
     example: r##"(nodes: {
     "place": position(),
-    "example": ramp(value: "= place.z / 2400", curve: monotone, stops: [
+    "example": ramp(value: "= place.z / 2400 mm", curve: monotone, stops: [
         (at: 0, colour: "#5b3a1e"), (at: 0.3, colour: "#c89a62"), (at: 1, colour: "#ecd9b4"),
     ]),
 })"##,

@@ -57,7 +57,7 @@ pub static KIND: Kind = Kind {
     )],
     example: r#"(nodes: {
     "place": position(),
-    "example": remap(value: "= place.z", from: (0, 2400), to: (1, 0.2), curve: smooth),
+    "example": remap(value: "= place.z / 1 mm", from: (0, 2400), to: (1, 0.2), curve: smooth),
 })"#,
     build,
 };
