@@ -23,6 +23,13 @@ pub static KIND: Kind = Kind {
     source: "own construction; conventions of OpenPBR, glTF and OpenEXR",
     inputs: &[
         Input::new("of", Type::Material, "The piece.").of(Domain::Plane),
+        Input::new(
+            "size",
+            Type::Pair(Unit::Millimetre),
+            "Width and height of a piece that has none of its own, such as a picture; pieces that were cut have.",
+        )
+        .optional()
+        .range(1e-3, 1e7),
         Input::number(
             "pixels_per_mm",
             Unit::PixelPerMillimetre,
@@ -83,12 +90,7 @@ const RANGE: &[Input] = &[
 
 fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let material = inputs.material("of");
-    let Some(size) = material.size else {
-        return Err(
-            Failure::of_input("of", "the material is not a cut piece, so it has no size")
-                .with_hint("cut it first, for example with `slice_cut`"),
-        );
-    };
+    let size = size(inputs, material.size)?;
     let format = MapFormat::from_name(inputs.choice("format"))
         .expect("the format is one of the names that the input declares");
     let channels = inputs.names("channels").to_vec();
@@ -187,6 +189,23 @@ fn check_channel(
         )));
     }
     Ok(())
+}
+
+/// Width and height of the piece: its own, or as stated.
+fn size(inputs: &Inputs<'_>, own: Option<[f64; 2]>) -> Result<[f64; 2], Failure> {
+    let stated = inputs.get("size").map(|_| inputs.pair("size"));
+    match (own, stated) {
+        (Some(size), None) | (None, Some(size)) => Ok(size),
+        (None, None) => {
+            let message = "the material is not a cut piece, so it has no size";
+            let hint = "cut it, for example with `slice_cut`, or state its `size: (200, 100)` here";
+            Err(Failure::of_input("of", message).with_hint(hint))
+        }
+        (Some([width, height]), Some(_)) => {
+            let message = format!("the piece has a size of its own, {width} x {height} mm");
+            Err(Failure::of_input("size", message).with_hint("remove `size`"))
+        }
+    }
 }
 
 /// Width and height of the picture, from its resolution or as stated.
