@@ -4,6 +4,7 @@ use super::composite::default_literal;
 use super::links::Linker;
 use super::literal::{Slot, parameter_name};
 use super::names::shown;
+use super::parameters::Declared;
 use super::recipe::{key, report_duplicate_name};
 use super::text_literal::TextLiteral;
 use super::tree::{Shape, Tree};
@@ -15,11 +16,12 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 impl Linker<'_, '_> {
-    /// What an input is bound to; `node` is the place of the node's name.
+    /// What an input is bound to; `node` is the place of the node's name, and `declared` what a compound
+    /// declares as the input.
     pub(super) fn bind(
         &mut self,
         owner: &str,
-        input: &'static Input,
+        (input, declared): (&'static Input, Option<&Declared>),
         tree: Option<&Tree>,
         node: &Span,
     ) -> Option<Binding> {
@@ -31,7 +33,11 @@ impl Linker<'_, '_> {
         let source = match (tree.filter(is_given), input.presence) {
             (Some(tree), _) => self.source(tree, input)?,
             (None, Presence::Optional) => Source::Absent,
-            (None, Presence::Default(text)) => self.default_source(input, text),
+            (None, Presence::Default(text)) => match declared {
+                // Files among the defaults lie beside the compound.
+                Some(declared) => declared.default.clone()?,
+                None => self.default_source(input, text),
+            },
             (None, Presence::Required) => {
                 return self.reader.refuse_missing(owner, input, node.clone());
             }

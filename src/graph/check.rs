@@ -3,7 +3,7 @@
 use super::compound::{Definition, Slot};
 use super::links::{Linker, Scope};
 use super::literal::Reader;
-use super::parameters::Parameters;
+use super::parameters::{Interface, Parameters};
 use super::recipe::Declaration;
 use super::report::Report;
 use super::{Binding, CompoundUse, Link, Node, Origin, Source};
@@ -194,7 +194,8 @@ impl Instance {
             };
             // What comes after too many mistakes is not reported anyway.
             let kind = slot.kind.filter(|_| !linker.reader.report.is_full());
-            let bindings = kind.map(|kind| bind_inputs(&mut linker, declaration, kind));
+            let interface = slot.inside.map(|used| &*definitions[used].interface);
+            let bindings = kind.map(|kind| bind_inputs(&mut linker, declaration, kind, interface));
             let bindings = bindings.unwrap_or_default();
             match (slot.inside, kind) {
                 (None, _) => {
@@ -210,7 +211,7 @@ impl Instance {
                 }
                 (Some(used), Some(kind)) => {
                     let one = self.used(declaration, slot, kind, bindings, &definitions[used]);
-                    inside.push(self.instance(&one, used, &definitions[used], declaration));
+                    inside.push(self.instance(&one, used, &definitions[used]));
                     expanded.uses.push(one);
                 }
                 (Some(_), None) => {}
@@ -260,20 +261,9 @@ impl Instance {
         Definition {
             file, interface, ..
         }: &Definition<'_>,
-        declaration: &Declaration<'_>,
     ) -> Instance {
-        let is_written = |name: &str| {
-            declaration
-                .fields
-                .iter()
-                .any(|field| field.name.text == name)
-        };
-        let declared = interface.declared.iter().zip(&one.bindings);
-        let sources = declared.map(|(declared, binding)| match is_written(&declared.name) {
-            true => Some(binding.as_ref()?.source.clone()),
-            // Files among the defaults lie beside the compound.
-            false => declared.default.clone(),
-        });
+        let sources = one.bindings.iter().take(interface.declared.len());
+        let sources = sources.map(|binding| Some(binding.as_ref()?.source.clone()));
         let seed = match one.bindings.last() {
             Some(Some(Binding {
                 source: Source::Literal(Value::Whole(seed)),
@@ -306,13 +296,18 @@ fn bind_inputs(
     linker: &mut Linker<'_, '_>,
     declaration: &Declaration<'_>,
     kind: &'static Kind,
+    interface: Option<&Interface>,
 ) -> Vec<Option<Binding>> {
     let owner = format!("an input of `{}`", kind.name);
     let found = linker
         .reader
         .assign(&owner, kind.inputs, declaration.fields);
-    let inputs = kind.inputs.iter().zip(found);
+    let declared = |index: usize| interface?.declared.get(index);
+    let inputs = kind.inputs.iter().enumerate().zip(found);
     inputs
-        .map(|(input, tree)| linker.bind(&owner, input, tree, &declaration.span))
+        .map(|((index, input), tree)| {
+            let input = (input, declared(index));
+            linker.bind(&owner, input, tree, &declaration.span)
+        })
         .collect()
 }

@@ -111,12 +111,10 @@ impl Declared {
             // A default outside the range is reported and is there, so that nothing follows from it.
             reader.all_in_range(value, tree.span.clone(), slot);
         }
-        self.default = value.and_then(|value| match (value_type, value) {
-            (Type::File, Value::Text(path)) => {
-                let source = &reader.report.source;
-                Some(Source::File(NamedFile::beside(source, path.into())))
-            }
-            (_, value) => Some(Source::Literal(value)),
+        let source = &report.source;
+        self.default = value.map(|value| match (value_type, value) {
+            (Type::File, Value::Text(path)) => Source::File(NamedFile::beside(source, path.into())),
+            (_, value) => Source::Literal(value),
         });
         self.default_text = Some(report.source.text[tree.span.clone()].to_owned());
     }
