@@ -64,7 +64,8 @@ fn summary(graph: &Graph) -> String {
         // One node stands for the inputs.
         Some(kind) => format!(
             "a compound with {}, {}, {}",
-            count(kind.inputs.len(), "input"),
+            // The seed that every compound has is not declared.
+            count(kind.inputs.len() - 1, "input"),
             nodes(1),
             count(kind.outputs.len(), "output")
         ),

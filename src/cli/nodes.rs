@@ -31,8 +31,14 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
             Some(one) if arguments.json => report::json(&one.json()),
             Some(one) => report::line(&one.describe()),
             None => {
-                let hint = hint(&near(name, &all));
-                report::problem(&format!("there is no kind `{name}`; {hint}"));
+                let problem = match broken(name) {
+                    Some(file) => format!(
+                        "the compound in `{0}` has mistakes: `yosegi check {0}`",
+                        file.display()
+                    ),
+                    None => format!("there is no kind `{name}`; {}", hint(&near(name, &all))),
+                };
+                report::problem(&problem);
                 return Exit::Wrong;
             }
         },
@@ -55,6 +61,12 @@ fn all() -> Vec<Listed> {
         file: Some(compound.path),
     });
     native.chain(compounds).collect()
+}
+
+/// The file of a compound that is not listed, so something is wrong with it.
+fn broken(name: &str) -> Option<PathBuf> {
+    let files = ["nodes", "../nodes"].map(|folder| Path::new(folder).join(format!("{name}.ron")));
+    files.into_iter().find(|file| file.is_file())
 }
 
 /// The kinds that may have been meant: by the whole name, or else by one of its words.

@@ -141,10 +141,13 @@ pub(super) fn check(
     expanded
 }
 
+/// Nodes of a compound that is looked at although nothing can use it.
+const LARGEST_ASIDE: usize = 10_000;
+
 /// Finds what else is wrong inside compounds that have no interface, so that nothing uses them.
 fn check_unusable(report: &mut Report, definitions: &[Definition<'_>]) {
     for (index, definition) in definitions.iter().enumerate().skip(1) {
-        if definition.kind.is_some() {
+        if definition.kind.is_some() || definition.layout.size > LARGEST_ASIDE {
             continue;
         }
         let origin = Arc::new(Origin::of_file(definition.file));
@@ -158,7 +161,7 @@ fn check_unusable(report: &mut Report, definitions: &[Definition<'_>]) {
             origin: Arc::clone(&origin),
         };
         let mut aside = Expanded {
-            drafts: vec![Draft::empty(&origin); definition.recipe.nodes.len()],
+            drafts: vec![Draft::empty(&origin); definition.layout.size],
             uses: vec![],
             used: vec![],
         };

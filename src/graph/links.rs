@@ -196,7 +196,7 @@ impl Linker<'_, '_> {
             |error| {
                 error
                     .expected("a constant", "a field")
-                    .hint("write a literal or a parameter")
+                    .hint("write a literal or a parameter; of a compound of yours, declare the input with `per_point: true`")
             },
         )
     }

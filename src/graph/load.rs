@@ -115,7 +115,15 @@ fn load_source(
     let mut set_problems = vec![];
     let graph = compound::define(&mut report, library, &files)
         .filter(|definitions| !report_size(&mut report, definitions, settings))
-        .and_then(|definitions| graph(&mut report, &definitions, settings, &mut set_problems));
+        .and_then(|definitions| {
+            graph(
+                &mut report,
+                library,
+                &definitions,
+                settings,
+                &mut set_problems,
+            )
+        });
     let has_errors = report.has_errors() || !set_problems.is_empty();
     let mut diagnostics = report.finish();
     match graph {
@@ -180,6 +188,7 @@ fn report_size(report: &mut Report, definitions: &[Definition<'_>], settings: &S
 /// The graph of the first definition; `None` if something is wrong with it, which is reported.
 fn graph(
     report: &mut Report,
+    library: &Library<'_>,
     definitions: &[Definition<'_>],
     settings: &Settings,
     set_problems: &mut Vec<Diagnostic>,
@@ -206,6 +215,7 @@ fn graph(
         report.enter(&Origin::of_file(definition.file));
         definition.interface.report_unused(report, used);
     }
+    report_native(report, &definitions[0], library);
     let drafts = &expanded.drafts;
     Some(Graph {
         source: Arc::clone(&file.source),
@@ -227,6 +237,19 @@ fn graph(
     })
 }
 
+/// Warns about a compound that no recipe can use, since a kind written in Rust has its name.
+fn report_native(report: &mut Report, definition: &Definition<'_>, library: &Library<'_>) {
+    let name = &definition.file.name;
+    if definition.recipe.role == Role::Recipe || library.native(name).is_none() {
+        return;
+    }
+    let message =
+        format!("a kind written in Rust is called `{name}`, so no recipe can use this one");
+    report.enter(&Origin::of_file(definition.file));
+    let warning = report.warning(Code::DuplicateName, message, 0..1, "rename this file");
+    report.add(warning);
+}
+
 /// What the parameters of a recipe are, or stand-ins for the inputs of a compound that is loaded by itself.
 fn bound(definition: &Definition<'_>, settings: &Settings) -> (Parameters, Vec<Diagnostic>) {
     let interface = Arc::clone(&definition.interface);
@@ -237,7 +260,10 @@ fn bound(definition: &Definition<'_>, settings: &Settings) -> (Parameters, Vec<D
             .map(|one| one.default.clone())
             .collect(),
         Role::Compound => {
-            let inputs = NodeIndex::new(definition.layout.size);
+            // Without an interface there is no node that could stand for the inputs.
+            let inputs = definition
+                .kind
+                .map(|_| NodeIndex::new(definition.layout.size));
             let declared = interface.declared.iter().enumerate();
             declared
                 .map(|(position, one)| compound::stand_in(one, position, inputs))

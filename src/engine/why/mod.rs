@@ -85,10 +85,14 @@ fn find(graph: &Graph, name: &str) -> Result<NodeIndex, RunError> {
         let mut outputs = graph.outputs.iter().copied();
         outputs.find(|index| *graph.nodes[*index].name == *name)
     };
-    let found = graph.by_name.get(name).copied().or_else(|| output(name));
+    // Of a compound what its first output comes from.
+    let inside = |name: &str| Some(graph.uses.get(name)?.outputs.first()?.node);
+    let found = graph.by_name.get(name).copied();
+    let found = found.or_else(|| output(name)).or_else(|| inside(name));
     found.ok_or_else(|| {
         let message = format!("the recipe has no node or output `{name}`");
         let names = graph.nodes.node_weights().map(|node| &*node.name);
+        let names = names.chain(graph.uses.keys().map(String::as_str));
         let diagnostic = Diagnostic::error(Code::UnknownNode, message);
         RunError::Request(vec![diagnostic.nearest(nearest(name, names))])
     })

@@ -1,10 +1,10 @@
 //! The interface of a compound: the kind that its uses see.
 
-use super::super::links::{Linker, Scope};
+use super::super::links::{Found, Linker, Scope};
 use super::super::literal::Reader;
 use super::super::names::shown;
 use super::super::parameters::{Declared, Interface, Parameters};
-use super::super::recipe::Recipe;
+use super::super::recipe::{Outlet, Recipe};
 use super::super::report::Report;
 use super::super::{Link, Source};
 use super::layout::Place;
@@ -37,7 +37,7 @@ pub(super) fn outputs(
             scope: &scope,
             index: NodeIndex::end(),
         };
-        let found = linker.find(outlet.of, outlet.span.clone());
+        let found = outlet_of(&mut linker, outlet);
         let about = found.map_or(outlet.about, |found| match outlet.about {
             "" => found.output.about,
             about => about,
@@ -54,6 +54,32 @@ pub(super) fn outputs(
         outputs.push((output, place));
     }
     outputs.into_iter().unzip()
+}
+
+/// The output of a node that an output of the compound is.
+fn outlet_of(linker: &mut Linker<'_, '_>, outlet: &Outlet<'_>) -> Option<Found> {
+    let span = outlet.span.clone();
+    let (what, hint) = match outlet.of.chars().next() {
+        Some('=') => (
+            "arithmetic",
+            "make a node of it first, for example `remap(value: \"= ..\", beyond: extend)`",
+        ),
+        Some('$') => (
+            "an input",
+            "its user has that already; link a node that is made of it",
+        ),
+        _ => return linker.find(outlet.of, span),
+    };
+    let message = format!(
+        "expected `node.output` for {}, found {what}",
+        shown(outlet.name)
+    );
+    let label = "not an output of a node";
+    linker
+        .reader
+        .refuse(Code::NotANode, message, span, label, |error| {
+            error.expected("`node.output`", what).hint(hint)
+        })
 }
 
 /// Stands where an output is wrong, so that links to it are not reported as well.
@@ -117,11 +143,11 @@ fn input(declared: &Declared) -> Option<Input> {
 }
 
 /// What stands for an input that has no default while a compound is checked by itself: a valid literal, or
-/// an output of the node `inputs`.
+/// an output of the node `inputs`, if there is one.
 pub(in crate::graph) fn stand_in(
     declared: &Declared,
     position: usize,
-    inputs: NodeIndex,
+    inputs: Option<NodeIndex>,
 ) -> Option<Source> {
     if let Some(default) = &declared.default {
         return Some(default.clone());
@@ -141,11 +167,13 @@ pub(in crate::graph) fn stand_in(
         Type::Pair(_) => Some(Value::Pair([number; 2])),
         _ => None,
     };
-    let link = Source::Link(Link {
-        node: inputs,
+    if let Some(literal) = literal {
+        return Some(Source::Literal(literal));
+    }
+    Some(Source::Link(Link {
+        node: inputs?,
         output: position,
-    });
-    Some(literal.map_or(link, Source::Literal))
+    }))
 }
 
 /// The kind of the node `inputs`: every input of the compound as an output.

@@ -149,7 +149,9 @@ fn find_kind(
                 .error(Code::UnknownKind, message, word.span.clone(), label)
                 .in_node(declaration.name)
                 .nearest(library.nearest(&word.text, is_output))
-                .hint("run `yosegi nodes` for the list of kinds"),
+                .hint(
+                    "run `yosegi nodes` for the list of kinds; compounds of your own lie in `nodes` beside the recipe",
+                ),
         );
         return None;
     };

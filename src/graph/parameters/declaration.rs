@@ -83,8 +83,16 @@ impl Declared {
         }
         self.read_default(report, fields, value_type);
         self.read_point_fields(report, fields, value_type);
-        if let Some(Value::Toggle(true)) = literal(report, fields, "optional", Type::Toggle, None) {
-            self.default.get_or_insert(Source::Absent);
+        let optional = literal(report, fields, "optional", Type::Toggle, None);
+        match (optional, fields.get("optional"), &self.default) {
+            (Some(Value::Toggle(true)), _, None) => self.default = Some(Source::Absent),
+            (Some(Value::Toggle(true)), Some(tree), Some(_)) => {
+                let message = format!("{} is optional and has a default", shown(&self.name));
+                let span = tree.span.clone();
+                let error = report.error(Code::DuplicateField, message, span, "one too many");
+                report.add(error.hint("remove one of them: with a default it need not be given"));
+            }
+            _ => {}
         }
     }
 

@@ -5,6 +5,7 @@ use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::graph::lexer::{Bracket, TokenKind, unclosed};
 use crate::graph::names::{shown, shown_letter};
 use crate::graph::tree::{Shape, Tree};
+use crate::value::Unit;
 
 impl Parser<'_, '_> {
     /// Keeps a mistake, unless an unclosed string before it on the line explains it.
@@ -40,6 +41,24 @@ impl Parser<'_, '_> {
             TokenKind::End => "the end of the file".to_owned(),
             _ => shown(&self.report.source.text[self.token.span.clone()]),
         }
+    }
+
+    /// Whether the token is a unit behind a number.
+    pub(super) fn is_unit(&self) -> bool {
+        let text = &self.report.source.text;
+        let behind_number = text[..self.end].ends_with(|letter: char| letter.is_ascii_digit());
+        behind_number && Unit::from_symbol(&text[self.token.span.clone()]).is_some()
+    }
+
+    /// Reports a number that is written with its unit.
+    pub(super) fn refuse_unit(&mut self) {
+        let unit = self.found();
+        let message = format!("a literal is written without its unit, found {unit}");
+        let span = self.token.span.clone();
+        let error = self.report.error(Code::Syntax, message, span, "a unit");
+        self.add(error.expected("`,`", unit).hint(
+            "write the number alone, in the unit of the input; only arithmetic has units: `\"= 20 mm\"`",
+        ));
     }
 
     pub(super) fn refuse_many(&mut self) {

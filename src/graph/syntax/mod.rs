@@ -262,6 +262,7 @@ impl Parser<'_, '_> {
             }
             TokenKind::Close(_) | TokenKind::End | TokenKind::Colon => {}
             _ if self.gave_up || self.token.follows_mistake => {}
+            _ if self.is_unit() => self.refuse_unit(),
             _ => {
                 let found = self.found();
                 let message = format!("expected `,`, found {found}");

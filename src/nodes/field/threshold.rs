@@ -19,7 +19,7 @@ pub static KIND: Kind = Kind {
         Input::number(
             "value",
             Unit::One,
-            "The number; of another unit by arithmetic: `\"= node.time\"`.",
+            "The number; of another unit by division: `\"= node.time / 1 year\"`.",
         )
         .per_point(),
         Input::number("edge", Unit::One, "Where the mask turns from 0 to 1.")

@@ -15,7 +15,7 @@ pub static KIND: Kind = Kind {
         Input::number(
             "value",
             Unit::One,
-            "A number; of another unit by arithmetic: `\"= node.time\"`.",
+            "A number; of another unit by division: `\"= node.time / 1 year\"`.",
         )
         .per_point()
         .default("0"),
