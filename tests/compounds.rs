@@ -379,3 +379,89 @@ fn a_chain_of_uses_is_shown_from_the_inside_out() {
         Path::new("r/nodes/streaked.ron")
     );
 }
+
+/// What is made of it has more parts at each use than memory could hold.
+#[test]
+fn arithmetic_is_not_passed_on_without_end() {
+    let nodes: String = (0..600)
+        .map(|one| format!("\"n{one}\": mix(a: (0, 0, 0), b: (1, 1, 1), amount: \"$x\"),"))
+        .collect();
+    let wide = format!(
+        "(version: 1, inputs: {{ \"x\": number(per_point: true) }}, nodes: {{ {nodes} }}, \
+         outputs: {{ \"look\": \"n0\" }})"
+    );
+    let leaves = vec!["dots.value"; 2048];
+    let balanced = leaves
+        .chunks(64)
+        .map(|part| format!("({})", part.join(" + ")));
+    let sum = balanced.collect::<Vec<_>>().join(" + ");
+    let used = recipe(&format!(
+        "\"dots\": solid_noise(size: (5, 5, 5)), \"one\": wide(x: \"= {sum}\"), \
+         \"look\": mix(a: \"one\", b: \"one\", amount: 0),"
+    ));
+    let wrong = codes(&world(&used, &[("wide", &wide)]));
+    assert!(wrong.contains(&Code::TooLarge), "{wrong:?}");
+}
+
+#[test]
+fn a_default_lies_beside_the_compound_also_when_an_outer_one_leaves_it_out() {
+    let inner = r#"(
+        version: 1,
+        inputs: { "photo": file(default: "bar.png") },
+        nodes: { "bar": sample_pattern(file: "$photo", spans: bar, rings: 40, even_years: false) },
+        outputs: { "bar": "bar" },
+    )"#;
+    let outer = r#"(
+        version: 1,
+        inputs: { "photo": file(optional: true) },
+        nodes: { "lined": lined(photo: "$photo") },
+        outputs: { "bar": "lined" },
+    )"#;
+    let nodes = r#""bar": outer(),
+        "tree": skeleton(trunk: [(0, 0, 0), (0, 0, 1000)]),
+        "time": growth_field(skeleton: "tree", elongation: 300, thickening: 2),
+        "look": pattern_lookup(time: "time", pattern: "bar"),"#;
+    let world = world(&recipe(nodes), &[("lined", inner), ("outer", outer)]);
+    let photo = std::fs::read("assets/spruce_bar/spruce_bar.png").unwrap();
+    world.insert("r/nodes/bar.png", photo);
+    rendered(&world);
+}
+
+#[test]
+fn stand_ins_are_no_mistakes() {
+    let text = r##"(
+        version: 1,
+        inputs: {
+            "form": text(),
+            "texels": whole(),
+            "inputs": number(),
+        },
+        nodes: {
+            "inputs": solid_noise(size: (5, 5, 5), form: "$form", gain: "$inputs"),
+            "year": colour_pattern(stops: [(at: 0, colour: "#000000"), (at: 1, colour: "#ffffff")], texels: "$texels"),
+        },
+        outputs: { "value": "inputs.value", "year": "year" },
+    )"##;
+    let world = world("", &[("free", text)]);
+    let path = Path::new("r/nodes/free.ron");
+    let loaded = load(&world, path, &Settings::default());
+    let loaded =
+        loaded.unwrap_or_else(|wrong| panic!("{}", yosegi::diagnostics::render_all(&wrong)));
+    assert_eq!(
+        loaded.graph.node("inputs").unwrap().kind.name,
+        "solid_noise"
+    );
+}
+
+#[test]
+fn names_are_limited() {
+    let long = "a".repeat(101);
+    let text = recipe(
+        "\"look\": mix(a: (1, 0, 0), b: (0, 1, 0), amount: 0.5), \"LONG\": solid_noise(size: (1, 1, 1)),",
+    );
+    assert_eq!(
+        codes(&world(&text.replace("LONG", &long), &[])),
+        [Code::InvalidName]
+    );
+    loaded(&world(&text.replace("LONG", &long[1..]), &[])).unwrap();
+}

@@ -9,9 +9,9 @@ use std::path::Path;
 use std::sync::Arc;
 use yosegi::diagnostics::{Code, Diagnostic, SourceFile, render_all};
 use yosegi::graph::edit::{Change, Edit, Place, Section, Step, apply, changes, find};
-use yosegi::graph::{Graph, Settings, Source, kinds, load_text};
+use yosegi::graph::{Graph, Settings, Source, kinds};
 use yosegi::node::Kind;
-use yosegi::world::Memory;
+use yosegi::world::{Disk, Memory, World};
 
 const RECIPE: &str = r##"(
     // The tree comes first.
@@ -36,7 +36,7 @@ const RECIPE: &str = r##"(
 
 /// All kinds, the compounds that come with Yosegi among them.
 fn all_kinds() -> Vec<&'static Kind> {
-    kinds(&Memory::default(), Path::new(""))
+    kinds(&Disk, Path::new("graphs"))
 }
 
 fn source(text: &str) -> Arc<SourceFile> {
@@ -53,8 +53,13 @@ fn refused(text: &str, edit: &Edit) -> Diagnostic {
         .remove(0)
 }
 
+/// The recipe in a folder beside the compounds of the gallery.
 fn load(text: &str) -> Graph {
-    match load_text("a.ron", text, &Settings::default()) {
+    let world = Memory::default();
+    let compound = Disk.read(Path::new("graphs/nodes/cherry.ron")).unwrap();
+    world.insert("nodes/cherry.ron", compound);
+    world.insert("a.ron", text);
+    match yosegi::graph::load(&world, Path::new("a.ron"), &Settings::default()) {
         Ok(loaded) => loaded.graph,
         Err(all) => panic!("{text}\n{}", render_all(&all)),
     }

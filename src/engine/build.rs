@@ -355,7 +355,7 @@ fn diagnose(plan: &Plan<'_>, index: NodeIndex, failure: Failure) -> Diagnostic {
             let span = &node.inputs[position].span;
             let item = failure
                 .item
-                .and_then(|item| item_span(&plan.graph.source, span, item));
+                .and_then(|item| item_span(&node.origin.source, span, item));
             item.unwrap_or_else(|| span.clone())
         }
         None => node.span.clone(),

@@ -7,9 +7,9 @@ use crate::diagnostics::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::output;
 use crate::value::MapFormat;
-use crate::world::World;
+use crate::world::{Listed, World};
 use petgraph::graph::NodeIndex;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// The file of a channel of an output.
@@ -44,13 +44,12 @@ pub(super) fn refuse_shared(
 /// channels: a file is one if it carries a key of ours and the channel that its name says.
 pub(super) fn stale(
     world: &dyn World,
-    folder: &Path,
+    folder: &[Listed],
     output: &str,
-    written: &[&str],
+    written: &HashSet<&str>,
 ) -> Vec<(String, PathBuf)> {
     let mut stale = vec![];
-    // A folder that cannot be listed has nothing to warn of.
-    for listed in world.list(folder).unwrap_or_default() {
+    for listed in folder {
         let Some(name) = listed.path.file_name().and_then(|name| name.to_str()) else {
             continue;
         };
@@ -59,11 +58,11 @@ pub(super) fn stale(
             Some(channel.to_owned())
         });
         if let Some(channel) = channel
-            && !written.contains(&name)
+            && !written.contains(name)
             && output::read_key(world, &listed.path).is_some()
             && output::read_channel(world, &listed.path).as_deref() == Some(&*channel)
         {
-            stale.push((channel, listed.path));
+            stale.push((channel, listed.path.clone()));
         }
     }
     stale

@@ -7,9 +7,10 @@ use super::render::{Output, Render, WantedMap};
 use super::store::{MapRecord, Store};
 use super::{Engine, RESULTS, files};
 use crate::key::{Key, KeyHasher};
+use crate::world::Listed;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 /// A map that need not be painted.
@@ -136,11 +137,10 @@ impl Output<'_> {
         }
     }
 
-    /// Names the files that the output has left behind: they are not among the `written`.
-    pub(super) fn tell_stale(&self, written: &[(NodeIndex, String)]) {
+    /// Names the files among those in the folder that the output has left behind: they are not `written`.
+    pub(super) fn tell_stale(&self, folder: &[Listed], written: &HashSet<&str>) {
         let world = &*self.engine.world;
-        let written: Vec<&str> = written.iter().map(|(_, name)| name.as_str()).collect();
-        for (channel, path) in files::stale(world, &self.request.folder, self.name(), &written) {
+        for (channel, path) in files::stale(world, folder, self.name(), written) {
             self.request.listener.hear(Event::MapStale {
                 output: self.name().to_owned(),
                 channel,

@@ -87,7 +87,7 @@ impl<'g> Plan<'g> {
             }
             Source::Literal(value) => value.add_to_key(key),
             Source::File(file) => {
-                key.text("file").bytes(&self.files[file].bytes);
+                self.files[file].add_to_key(key);
             }
             Source::Link(link) => {
                 key.text("link")

@@ -102,14 +102,31 @@ impl Engine {
         for (output, known) in outputs.iter().zip(&known) {
             let maps = output.make(known.as_deref(), &built, &meter)?;
             meter.count().finish(maps.len());
-            if !maps.is_empty() {
-                output.tell_stale(&names);
-            }
-            rendered.extend(maps);
+            rendered.push(maps);
         }
+        self.tell_stale(request, &outputs, &rendered, &names);
+        let rendered = rendered.concat();
         built.complete()?;
         self.remember_run(request, &plan);
         Ok(rendered)
+    }
+
+    /// Names the files that the outputs with maps have left behind.
+    fn tell_stale(
+        &self,
+        request: &Render<'_>,
+        outputs: &[Output<'_>],
+        rendered: &[Vec<RenderedMap>],
+        names: &[(NodeIndex, String)],
+    ) {
+        // A folder that cannot be listed has nothing to warn of.
+        let folder = self.world.list(&request.folder).unwrap_or_default();
+        let written = names.iter().map(|(_, name)| name.as_str()).collect();
+        for (output, maps) in outputs.iter().zip(rendered) {
+            if !maps.is_empty() {
+                output.tell_stale(&folder, &written);
+            }
+        }
     }
 
     /// Records what has run, for [`Engine::why`].

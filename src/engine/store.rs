@@ -8,7 +8,7 @@ use crate::key::Key;
 use crate::output;
 use crate::world::World;
 use serde::{Deserialize, Serialize};
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -78,19 +78,29 @@ impl Store {
         postcard::from_bytes(&self.get("map", key)?).ok()
     }
 
-    /// Remembers a map that was just written to `path`.
+    /// Remembers a map that was just written to `path`, unless another run has put its own there.
     ///
     /// # Errors
     /// Whatever the operating system says.
     pub(super) fn put_map(&self, key: &Key, path: &Path, faults: [u64; 2]) -> io::Result<()> {
-        let (file, bytes) = self.hash(path)?;
+        // Another run may have replaced the file since: what is hashed, checked and copied is one reading.
+        let mut stream = self.world.open(path)?;
+        let mut copy = vec![];
+        stream
+            .by_ref()
+            .take(LARGEST_COPY + 1)
+            .read_to_end(&mut copy)?;
+        if output::key_in(&copy).is_some_and(|found| found != *key) {
+            return Ok(());
+        }
+        let (file, bytes) = Key::of_stream(&mut copy.as_slice().chain(stream))?;
         let record = MapRecord {
             faults,
             file,
             bytes,
         };
         if record.bytes <= LARGEST_COPY {
-            self.put("file", &record.file, &self.world.read(path)?)?;
+            self.put("file", &record.file, &copy)?;
         }
         let bytes = postcard::to_stdvec(&record).map_err(io::Error::other)?;
         self.put("map", key, &bytes)
@@ -118,7 +128,9 @@ impl Store {
 
     /// Puts a remembered map at `path`; false if its contents are not in the store.
     pub(super) fn restore(&self, record: &MapRecord, path: &Path) -> bool {
-        let Some(contents) = self.get("file", &record.file) else {
+        let contents = self.get("file", &record.file);
+        let is_whole = |contents: &Vec<u8>| Key::of_bytes(contents) == record.file;
+        let Some(contents) = contents.filter(is_whole) else {
             return false;
         };
         let write = || {

@@ -57,11 +57,8 @@ pub fn load(
         vec![diagnostic]
     })?;
     let source = text::decode(path, bytes).map_err(|diagnostic| vec![*diagnostic])?;
-    load_source(
-        &Library::new(KINDS, world, folder_of(path)),
-        &source,
-        settings,
-    )
+    let library = Library::new(KINDS, world, folder_of(path)).allowing(settings.allow_outside);
+    load_source(&library, &source, settings)
 }
 
 /// Reads and checks `text` as if it had been read from `path`.
@@ -271,6 +268,7 @@ fn bound(definition: &Definition<'_>, settings: &Settings) -> (Parameters, Vec<D
         }
     };
     let mut parameters = Parameters::bound(interface, sources);
+    parameters.are_stand_ins = definition.recipe.role == Role::Compound;
     let problems = parameters.set_all(&settings.set);
     (parameters, problems)
 }
@@ -278,7 +276,8 @@ fn bound(definition: &Definition<'_>, settings: &Settings) -> (Parameters, Vec<D
 /// The node that stands for what a compound is given, if it is loaded by itself.
 fn stand_ins(definition: &Definition<'_>, origin: &Arc<Origin>) -> Option<Draft> {
     Some(Draft {
-        name: "inputs".into(),
+        // No node of a file has such a name.
+        name: "$inputs".into(),
         kind: Some(compound::inputs_kind(definition.kind?)),
         domain: Some(Domain::Everywhere),
         ..Draft::empty(origin)

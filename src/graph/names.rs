@@ -3,6 +3,8 @@
 use super::report::Report;
 use crate::diagnostics::{Code, Span, is_unsafe};
 
+/// Letters of the longest name: nodes inside compounds bear those of all uses around them.
+const LONGEST: usize = 100;
 /// Letters of a name or a literal that a message shows.
 const SHOWN: usize = 60;
 
@@ -19,6 +21,13 @@ fn wrong_letter(name: &str) -> Option<char> {
 
 /// Reports a name that is not valid; `what` says whose it is.
 pub(super) fn check_name(report: &mut Report, what: &str, name: &str, span: Span) {
+    if name.len() > LONGEST {
+        let message = format!("{} is too long a name for {what}", shown(name));
+        let label = format!("has {} letters", name.chars().count());
+        let error = report.error(Code::InvalidName, message, span, label);
+        report.add(error.expected(format!("at most {LONGEST} letters"), name.chars().count()));
+        return;
+    }
     if is_name(name) {
         return;
     }

@@ -5,6 +5,7 @@ use super::described::described_unit;
 use super::links::{Linker, units};
 use super::literal::{Reader, Slot, parameter_name};
 use super::names::{is_name, shown};
+use super::report::PASSED;
 use super::tree::{Shape, Tree};
 use crate::diagnostics::{Code, Span};
 use crate::node::{Input, Varies};
@@ -27,6 +28,11 @@ impl Linker<'_, '_> {
             }
             source => {
                 let source = source.clone();
+                if let Source::Arithmetic(expression) = &source
+                    && !self.reader.report.may_pass(expression.measure().1)
+                {
+                    return Some(self.reader.refuse_many_parts(tree.span.clone()));
+                }
                 Some(
                     self.reader
                         .fits(name, tree.span.clone(), slot)
@@ -90,6 +96,7 @@ impl Reader<'_> {
             return self.refuse_unknown_parameter(name, span);
         };
         let (unit, value_type) = (declared.unit, declared.value_type?);
+        let has_default = declared.default.is_some();
         let value = match source?.clone() {
             Source::Literal(value) => value,
             Source::Absent => return self.refuse_left_out(name, span, slot.name),
@@ -117,6 +124,9 @@ impl Reader<'_> {
                 return self.refuse_unit(name, span, slot, (unit, wanted));
             }
             (Value::Text(text), Type::Choice(names)) => {
+                if self.parameters.are_stand_ins && !has_default {
+                    return names.first().map(|name| Value::Choice(name));
+                }
                 return self.choose(&text, span, slot, names);
             }
             (Value::Text(text), Type::Text | Type::File) => Value::Text(text),
@@ -125,6 +135,10 @@ impl Reader<'_> {
             | (value @ Value::Colour(_), Type::Colour) => value,
             _ => return self.refuse_parameter(name, span, slot, value_type),
         };
+        // What stands for any value may be one that is not allowed here.
+        if self.parameters.are_stand_ins && !has_default {
+            return Some(value);
+        }
         self.all_in_range(&value, span, slot).map(|()| value)
     }
 
@@ -164,6 +178,14 @@ impl Reader<'_> {
                 }
             },
         )
+    }
+
+    /// Reports that compounds pass on too much arithmetic.
+    pub(super) fn refuse_many_parts<T>(&mut self, span: Span) -> Option<T> {
+        let message = format!("arithmetic that compounds pass on has more than {PASSED} parts");
+        self.refuse(Code::TooLarge, message, span, "here", |error| {
+            error.hint("make a node of the arithmetic, and link that")
+        })
     }
 
     /// Reports an input that the use of a compound has left out, where a value is needed.

@@ -9,6 +9,9 @@ use std::sync::Arc;
 /// Mistakes that are kept; beyond, a file is not worth more memory.
 const LIMIT: usize = 2000;
 
+/// Parts of expressions that compounds pass on, in a whole recipe: each level could double them.
+pub(super) const PASSED: usize = 1_000_000;
+
 /// What is wrong with a recipe and the compounds it uses.
 #[derive(Debug)]
 pub(super) struct Report {
@@ -22,6 +25,8 @@ pub(super) struct Report {
     seen: HashSet<(PathBuf, Code, usize, String)>,
     diagnostics: Vec<Diagnostic>,
     left_out: bool,
+    /// Parts of expressions that the uses of compounds have passed on.
+    passed: usize,
 }
 
 impl Report {
@@ -34,6 +39,7 @@ impl Report {
             seen: HashSet::new(),
             diagnostics: vec![],
             left_out: false,
+            passed: 0,
         }
     }
 
@@ -114,6 +120,12 @@ impl Report {
             let start = one.label.as_ref().map_or(0, |label| label.span.start);
             lines.insert(self.source.line_of(start))
         });
+    }
+
+    /// Counts parts of expressions that compounds pass on; false if there are too many.
+    pub(super) fn may_pass(&mut self, parts: usize) -> bool {
+        self.passed = self.passed.saturating_add(parts);
+        self.passed <= PASSED
     }
 
     /// Whether nothing more is kept.

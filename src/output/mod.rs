@@ -158,17 +158,27 @@ pub fn read_channel(world: &dyn World, path: &Path) -> Option<String> {
     read_text(world, path, CHANNEL_NAME)
 }
 
+/// The key in the start of a file; `None` as for [`read_key`].
+pub(crate) fn key_in(start: &[u8]) -> Option<Key> {
+    Key::from_hexadecimal(&text_in(start, KEY_NAME)?)
+}
+
 /// The text that a map carries under `name`.
 fn read_text(world: &dyn World, path: &Path, name: &str) -> Option<String> {
-    // Headers of ours end within the first thousand bytes; other programs write longer ones.
-    const START: usize = 1 << 16;
-    let start = world.read_start(path, START).ok()?;
+    text_in(&world.read_start(path, START).ok()?, name)
+}
+
+/// Headers of ours end within the first thousand bytes; other programs write longer ones.
+const START: usize = 1 << 16;
+
+fn text_in(start: &[u8], name: &str) -> Option<String> {
+    let start = &start[..start.len().min(START)];
     if start.starts_with(b"\x89PNG") {
-        png::read_text(&start, name)
+        png::read_text(start, name)
     } else if start.starts_with(b"II") {
-        tiff::read_text(&start, name)
+        tiff::read_text(start, name)
     } else {
-        exr::read_text(&start, name)
+        exr::read_text(start, name)
     }
 }
 

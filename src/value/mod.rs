@@ -25,6 +25,15 @@ pub struct FileContents {
     pub bytes: Arc<[u8]>,
 }
 
+impl FileContents {
+    /// Adds the contents, and the ending of the name: nodes warn of one that lies.
+    pub(crate) fn add_to_key<'k>(&self, key: &'k mut KeyHasher) -> &'k mut KeyHasher {
+        let ending = self.path.extension().unwrap_or_default();
+        let ending = ending.to_string_lossy().to_lowercase();
+        key.text("file").text(&ending).bytes(&self.bytes)
+    }
+}
+
 /// A value: what an input receives and an output gives.
 #[derive(Clone, Debug)]
 pub enum Value {
@@ -75,7 +84,7 @@ impl Value {
             Value::Toggle(toggle) => key.text("toggle").whole(i64::from(*toggle)),
             Value::Choice(name) => key.text("choice").text(name),
             Value::Text(text) => key.text("text").text(text),
-            Value::File(file) => key.text("file").bytes(&file.bytes),
+            Value::File(file) => file.add_to_key(key),
             Value::Colour(colour) => colour
                 .iter()
                 .fold(key.text("colour"), |key, part| key.number(*part)),

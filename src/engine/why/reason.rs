@@ -147,7 +147,7 @@ impl fmt::Display for Cause {
                 write!(formatter, "the version of its kind changed: {from} -> {to}")
             }
             Cause::SeedChanged { from, to } => {
-                write!(formatter, "the recipe's seed changed: {from} -> {to}")
+                write!(formatter, "the seed around it changed: {from} -> {to}")
             }
             Cause::SizeChanged { from, to } => {
                 write!(

@@ -59,7 +59,7 @@ impl NodeRecord {
         NodeRecord {
             kind: node.kind.name.to_owned(),
             version: node.kind.version,
-            seed: plan.graph.seed,
+            seed: node.origin.seed,
             pixels,
             plan: plan.keys[&index],
             inputs: inputs.collect(),

@@ -45,7 +45,7 @@ impl Arithmetic {
     }
 
     /// Operators above its deepest part, and the number of all parts.
-    pub(super) fn measure(&self) -> (usize, usize) {
+    pub(in crate::graph) fn measure(&self) -> (usize, usize) {
         use Arithmetic::{Binary, Call, Link, Negate, Number};
         let parts: &[Arithmetic] = match self {
             Number(_) | Link(_) => return (0, 1),

@@ -41,8 +41,6 @@ use units::Quantity;
 
 /// Operators between the root of an expression and its deepest part.
 const OPERATORS: usize = 256;
-/// Parts of the expressions that the inputs of a compound stand for: each level could double them.
-const PASSED: usize = 10_000;
 
 /// A part of an expression.
 #[derive(Debug)]
@@ -103,8 +101,6 @@ struct Parser<'p, 'c, 's> {
     slot: Slot<'p>,
     at: usize,
     depth: usize,
-    /// Parts of the expressions that the inputs of a compound stand for.
-    passed: usize,
 }
 
 impl<'p, 'c, 's> Parser<'p, 'c, 's> {
@@ -122,7 +118,6 @@ impl<'p, 'c, 's> Parser<'p, 'c, 's> {
             // Behind the `=`.
             at: 1,
             depth: 0,
-            passed: 0,
         }
     }
 

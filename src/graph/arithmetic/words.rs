@@ -1,7 +1,7 @@
 //! The words of arithmetic: numbers, parameters and links.
 
 use super::units::written_unit;
-use super::{Context, PASSED, Parser, Part, Quantity};
+use super::{Context, Parser, Part, Quantity};
 use crate::diagnostics::{Code, Span};
 use crate::graph::literal::Slot;
 use crate::graph::names::shown;
@@ -107,13 +107,11 @@ impl Parser<'_, '_, '_> {
             _ => return None,
         };
         let (depth, size) = expression.measure();
-        self.passed += size;
-        if self.passed <= PASSED {
+        let reader = self.reader();
+        if reader.report.may_pass(size) {
             return Some((expression, depth));
         }
-        let message = format!("arithmetic that compounds pass on has more than {PASSED} parts");
-        let reader = self.reader();
-        reader.refuse(Code::TooLarge, message, span, "here", |error| error)
+        reader.refuse_many_parts(span)
     }
 
     /// A function if parentheses follow, otherwise a link.

@@ -21,6 +21,8 @@ pub(in crate::graph) struct Library<'w> {
     /// Those written in Rust; no compound takes their names.
     pub(in crate::graph) kinds: &'w [&'static Kind],
     world: &'w dyn World,
+    /// Whether files may be anywhere.
+    allow_outside: bool,
     /// Where compounds are looked for, the first first, before those that come with Yosegi.
     folders: [PathBuf; 2],
 }
@@ -51,7 +53,16 @@ impl<'w> Library<'w> {
         Library {
             kinds,
             world,
+            allow_outside: false,
             folders,
+        }
+    }
+
+    /// With files anywhere, if the caller allows them.
+    pub(in crate::graph) fn allowing(self, allow_outside: bool) -> Library<'w> {
+        Library {
+            allow_outside,
+            ..self
         }
     }
 
@@ -69,7 +80,7 @@ impl<'w> Library<'w> {
         let compounds = if is_output {
             BTreeSet::new()
         } else {
-            self.compounds()
+            self.names()
         };
         let compounds = compounds.iter().map(String::as_str);
         nearest(name, fitting.map(|kind| kind.name).chain(compounds))
@@ -81,7 +92,7 @@ impl<'w> Library<'w> {
     }
 
     /// The names of all compounds.
-    fn compounds(&self) -> BTreeSet<String> {
+    fn names(&self) -> BTreeSet<String> {
         let listed = |folder| self.world.list(folder).unwrap_or_default();
         let files = self.folders.iter().flat_map(|folder| listed(folder));
         let names = files.filter_map(|file| {
@@ -93,13 +104,24 @@ impl<'w> Library<'w> {
         names.chain(shipped).filter(is_new).collect()
     }
 
+    /// The start of a file, as much as a recipe may have and one byte more. A symbolic link that leads out
+    /// of the folder counts as if nothing were there, unless the caller allows more.
+    fn read(&self, folder: &Path, path: &Path) -> io::Result<Vec<u8>> {
+        let real = self.world.real_path(path)?;
+        if !self.allow_outside && !real.starts_with(self.world.real_path(folder)?) {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        self.world.read_start(&real, text::LARGEST + 1)
+    }
+
     /// The file of a compound; `None` if there is none.
     fn find(&self, name: &str) -> Option<Result<Arc<SourceFile>, Box<Diagnostic>>> {
+        use io::ErrorKind::{NotADirectory, NotFound};
         for folder in &self.folders {
             let path = folder.join(format!("{name}.ron"));
-            match self.world.read(&path) {
+            match self.read(folder, &path) {
                 Ok(bytes) => return Some(text::decode(&path, bytes)),
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                Err(error) if matches!(error.kind(), NotFound | NotADirectory) => {}
                 Err(error) => {
                     let message = format!("`{}` could not be read: {error}", path.display());
                     return Some(Err(Diagnostic::error(Code::FileNotRead, message).into()));
@@ -272,9 +294,5 @@ pub fn compounds(world: &dyn World, folder: &Path) -> Vec<Compound> {
         let path = source.path.clone();
         Some(Compound { kind, path })
     };
-    library
-        .compounds()
-        .into_iter()
-        .filter_map(described)
-        .collect()
+    library.names().into_iter().filter_map(described).collect()
 }

@@ -3,7 +3,7 @@
 //! A recipe belongs to its author: layout, comments and the way numbers are written stay. So an edit is a
 //! list of [`Change`]s, each a range of bytes and what takes its place, found through the same tree that
 //! recipes are read from; the file is never printed anew. Recipes with mistakes can be edited as well, as
-//! long as they are valid RON.
+//! long as they are valid RON. The files of compounds cannot be edited yet, the recipes that use them can.
 //!
 //! ```
 //! use std::sync::Arc;

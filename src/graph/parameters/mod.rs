@@ -35,6 +35,8 @@ pub(super) struct Parameters {
     /// One for each declaration; `None` where something is wrong, which is reported.
     sources: Vec<Option<Source>>,
     is_used: Vec<bool>,
+    /// Whether what has no default stands for any value of its type.
+    pub(super) are_stand_ins: bool,
 }
 
 impl Interface {
@@ -91,6 +93,7 @@ impl Parameters {
             is_used: vec![false; interface.declared.len()],
             interface,
             sources,
+            are_stand_ins: false,
         }
     }
 
