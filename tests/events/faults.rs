@@ -211,3 +211,50 @@ fn runs_at_the_same_time_share_an_engine() {
     up to date pale_base_color.png
     ");
 }
+
+/// Another run puts its own map in place right after a map was written, before it is remembered.
+struct Overtaken {
+    files: Memory,
+    other: Vec<u8>,
+}
+
+impl World for Overtaken {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.files.read(path)
+    }
+
+    fn open(&self, path: &Path) -> io::Result<Box<dyn io::Read>> {
+        if path.ends_with("board_base_color.png") {
+            self.files.insert(path, self.other.clone());
+        }
+        Ok(Box::new(io::Cursor::new(self.files.read(path)?)))
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
+        self.files.create(path)
+    }
+}
+
+#[test]
+fn a_map_of_another_run_is_not_remembered_as_ours() {
+    let other = without_store();
+    let changed = BOARD.replace("thickening: 3,", "thickening: 4,");
+    other.run(&changed);
+    let right = without_store();
+    right.run(BOARD);
+    let workshop = with_store();
+    let world = Overtaken {
+        files: workshop.files.clone(),
+        other: other.map("board_base_color.png"),
+    };
+    let options = Options {
+        store: Some("store".into()),
+        ..options()
+    };
+    workshop.another_on(Arc::new(world), options).run(BOARD);
+    workshop.run(BOARD);
+    assert_eq!(
+        workshop.map("board_base_color.png"),
+        right.map("board_base_color.png")
+    );
+}
