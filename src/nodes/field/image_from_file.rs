@@ -9,6 +9,7 @@ mod footprint;
 mod pyramid;
 mod source;
 mod weights;
+mod window;
 
 use crate::colour::luminance;
 use crate::field::{Block, Field, Kernel, Sampling};
@@ -23,7 +24,7 @@ use weights::{Interpolation, Wrap};
 /// A picture as fields.
 pub static KIND: Kind = Kind {
     name: "image_from_file",
-    version: 1,
+    version: 2,
     about: "Shows a picture on a flat piece, at its size in mm and averaged over each pixel.",
     source: "own construction: box filter over the reconstruction filters of Keys 1981, on reduced copies after \
              Williams 1983",
@@ -195,7 +196,7 @@ impl Kernel for Picture {
     }
 
     fn nanoseconds(&self) -> f32 {
-        200.0
+        60.0
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
