@@ -6,6 +6,7 @@
 //! turned. Translucent pixels count by their opacity. Orientation notes and colour profiles are not applied.
 
 mod footprint;
+mod near;
 mod pyramid;
 mod source;
 mod weights;

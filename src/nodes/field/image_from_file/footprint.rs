@@ -3,9 +3,10 @@
 //! Where the sample's sides run along the picture's rows and columns the mean is separable and exact, on the largest
 //! copy of which it covers few pixels. Elsewhere it is the mean of points spread evenly over the sample.
 
+use super::near::Near;
 use super::pyramid::Pyramid;
 use super::weights::{self, Interpolation, Wrap, floor};
-use super::window::{Points, Window};
+use super::window::{Buffers, Points, Window};
 
 /// A picture in its place.
 #[derive(Debug)]
@@ -24,7 +25,7 @@ pub(super) struct Sampler {
 pub(super) struct Scratch {
     columns: Vec<(Option<usize>, f32)>,
     rows: Vec<(Option<usize>, f32)>,
-    window: Window,
+    buffers: Buffers,
 }
 
 /// Least number of pixels of a reduced copy that a sample covers along its shorter side.
@@ -69,11 +70,28 @@ impl Sampler {
             [across[1] * scale[0], -along[1] * scale[1]],
         ]
         .map(|side| side.map(|part| part.clamp(-FARTHEST, FARTHEST)));
-        let sizes = [width, height];
+        if self.interpolation == Interpolation::Linear
+            && let Some(near) = Near::of([x, y], sides)
+        {
+            return self.near_mean(&near);
+        }
         match upright(sides) {
             Some(extent) => self.upright_mean(scratch, [x, y], extent),
-            None => self.turned_mean(scratch, [x, y], sides, sizes),
+            None => self.turned_mean(scratch, [x, y], sides, [width, height]),
         }
+    }
+
+    fn near_mean(&self, near: &Near) -> [f32; 4] {
+        let size = self.pyramid.size(0);
+        let [columns, rows] = [0, 1].map(|axis| {
+            [0, 1, 2].map(|index| self.wrap.index(near.first[axis] + index, size[axis]))
+        });
+        let window = Window {
+            columns: &columns,
+            rows: &rows,
+            weights: &near.weights,
+        };
+        self.pyramid.sum(0, window)
     }
 
     /// The copy of which a sample with sides of these lengths covers few pixels.
@@ -116,8 +134,10 @@ impl Sampler {
             let span = [centre[axis] * density[axis], width];
             weights::write(weights, span, interpolation, self.wrap, size[axis]);
         }
-        scratch.window.set_products(&scratch.columns, &scratch.rows);
-        self.pyramid.sum(level, &scratch.window)
+        scratch
+            .buffers
+            .set_products(&scratch.columns, &scratch.rows);
+        self.pyramid.sum(level, scratch.buffers.window())
     }
 
     fn turned_mean(
@@ -130,10 +150,6 @@ impl Sampler {
         let lengths = sides.map(|[x, y]| (x * x + y * y).sqrt().min(4.0 * (sizes[0] + sizes[1])));
         let level = self.level(lengths);
         let size = self.pyramid.size(level);
-        let window = &mut scratch.window;
-        if level == 0 && self.set_cell(window, centre, sides) {
-            return self.pyramid.sum(0, window);
-        }
         let points = self.points(level, centre, sides, lengths);
         let interpolation = match level {
             0 => self.interpolation,
@@ -143,14 +159,15 @@ impl Sampler {
             let [start, end] = points.range(axis);
             end - start + 1.0
         });
+        let buffers = &mut scratch.buffers;
         let mut sum = [0.0f32; 4];
         if wide * tall <= WINDOW {
-            window.set_points(&points, interpolation, self.wrap, size);
-            sum = self.pyramid.sum(level, window);
+            buffers.set_points(&points, interpolation, self.wrap, size);
+            sum = self.pyramid.sum(level, buffers.window());
         } else {
             for point in points.each() {
-                window.set_points(&point, interpolation, self.wrap, size);
-                let found = self.pyramid.sum(level, window);
+                buffers.set_points(&point, interpolation, self.wrap, size);
+                let found = self.pyramid.sum(level, buffers.window());
                 sum = std::array::from_fn(|part| sum[part] + found[part]);
             }
         }
@@ -184,24 +201,6 @@ impl Sampler {
             steps,
             counts,
         }
-    }
-
-    /// Sets the weights of a sample that lies between the centres of two by two pixels; whether it does.
-    fn set_cell(&self, window: &mut Window, centre: [f64; 2], sides: [[f64; 2]; 2]) -> bool {
-        let [across, along] = sides;
-        let reach = [0, 1].map(|axis| 0.5 * (across[axis].abs() + along[axis].abs()));
-        let cell = centre.map(|middle| floor(middle - 0.5));
-        let share = [0, 1].map(|axis| centre[axis] - 0.5 - cell[axis] as f64);
-        let is_within =
-            |axis: usize| share[axis] >= reach[axis] && share[axis] + reach[axis] <= 1.0;
-        let lies = self.interpolation == Interpolation::Linear && is_within(0) && is_within(1);
-        if lies {
-            // A side shows every share of itself alike, with a variance of 1/12.
-            let covariance = (across[0] * across[1] + along[0] * along[1]) / 12.0;
-            let (share, covariance) = (share.map(|share| share as f32), covariance as f32);
-            window.set_cell(cell, share, covariance, self.wrap, self.pyramid.size(0));
-        }
-        lies
     }
 }
 

@@ -42,7 +42,7 @@ impl Base {
         }
     }
 
-    fn sum(&self, window: &Window) -> [f32; 4] {
+    fn sum(&self, window: Window<'_>) -> [f32; 4] {
         let width = self.size[0] as usize;
         match &self.codes {
             Codes::Eight(codes, table) => {
@@ -117,7 +117,7 @@ impl Pyramid {
     }
 
     /// The sum of the pixels of a copy in a window, by their weights.
-    pub(super) fn sum(&self, level: usize, window: &Window) -> [f32; 4] {
+    pub(super) fn sum(&self, level: usize, window: Window<'_>) -> [f32; 4] {
         match level {
             0 => self.base.sum(window),
             _ => {

@@ -40,16 +40,56 @@ impl Points {
     }
 }
 
-/// Rows and columns of a copy; those where nothing is are `None`.
+/// Some rows and columns of a copy, and a weight for each pixel where they cross, row by row.
+#[derive(Clone, Copy)]
+pub(super) struct Window<'a> {
+    /// Those where nothing is are `None`.
+    pub(super) columns: &'a [Option<usize>],
+    /// Those where nothing is are `None`.
+    pub(super) rows: &'a [Option<usize>],
+    /// Weights row by row.
+    pub(super) weights: &'a [f32],
+}
+
+impl Window<'_> {
+    /// The sum of the pixels, of which `texel` gives that with a column and a row, by their weights.
+    #[inline(always)]
+    pub(super) fn sum(&self, texel: impl Fn(usize, usize) -> [f32; 4]) -> [f32; 4] {
+        let mut sum = [0.0f32; 4];
+        let width = self.columns.len().max(1);
+        for (y, weights) in self.rows.iter().zip(self.weights.chunks_exact(width)) {
+            let Some(y) = *y else { continue };
+            for (x, weight) in self.columns.iter().zip(weights) {
+                let (Some(x), true) = (*x, *weight != 0.0) else {
+                    continue;
+                };
+                for (sum, part) in sum.iter_mut().zip(texel(x, y)) {
+                    *sum += part * weight;
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// Buffers for a window.
 #[derive(Default)]
-pub(super) struct Window {
+pub(super) struct Buffers {
     columns: Vec<Option<usize>>,
     rows: Vec<Option<usize>>,
-    /// Row by row.
     weights: Vec<f32>,
 }
 
-impl Window {
+impl Buffers {
+    /// The window that was set.
+    pub(super) fn window(&self) -> Window<'_> {
+        Window {
+            columns: &self.columns,
+            rows: &self.rows,
+            weights: &self.weights,
+        }
+    }
+
     /// The products of the weights of columns and rows.
     pub(super) fn set_products(
         &mut self,
@@ -65,23 +105,6 @@ impl Window {
             self.weights
                 .extend(columns.iter().map(|(_, wide)| wide * tall));
         }
-    }
-
-    /// The weights of two pixels by two, between whose centres a sample lies with its middle at `share` of the way.
-    /// Exact: of the product of both ways the mean differs by their covariance from the product of the means.
-    pub(super) fn set_cell(
-        &mut self,
-        cell: [i64; 2],
-        share: [f32; 2],
-        covariance: f32,
-        wrap: Wrap,
-        size: [usize; 2],
-    ) {
-        self.place(cell, [2, 2], wrap, size);
-        let [x, y] = share;
-        let both = x * y + covariance;
-        self.weights
-            .copy_from_slice(&[1.0 - x - y + both, x - both, y - both, both]);
     }
 
     /// The sums of the weights that each of some points gives to the pixels around it.
@@ -153,27 +176,5 @@ impl Window {
                 }
             }
         }
-    }
-
-    /// The sum of the pixels, of which `texel` gives that with a column and a row, by their weights.
-    #[inline(always)]
-    pub(super) fn sum(&self, texel: impl Fn(usize, usize) -> [f32; 4]) -> [f32; 4] {
-        let mut sum = [0.0f32; 4];
-        for (y, weights) in self
-            .rows
-            .iter()
-            .zip(self.weights.chunks_exact(self.columns.len().max(1)))
-        {
-            let Some(y) = *y else { continue };
-            for (x, weight) in self.columns.iter().zip(weights) {
-                let (Some(x), true) = (*x, *weight != 0.0) else {
-                    continue;
-                };
-                for (sum, part) in sum.iter_mut().zip(texel(x, y)) {
-                    *sum += part * weight;
-                }
-            }
-        }
-        sum
     }
 }
