@@ -51,6 +51,7 @@ impl Sampler {
 
     /// The mean around a point in mm whose coordinates change by `spread` from sample to sample; the colour is
     /// multiplied by the opacity, which is the last part.
+    #[inline(always)]
     pub(super) fn mean(
         &self,
         scratch: &mut Scratch,
@@ -81,11 +82,15 @@ impl Sampler {
         }
     }
 
+    #[inline]
     fn near_mean(&self, near: &Near) -> [f32; 4] {
         let size = self.pyramid.size(0);
-        let [columns, rows] = [0, 1].map(|axis| {
-            [0, 1, 2].map(|index| self.wrap.index(near.first[axis] + index, size[axis]))
-        });
+        let (mut columns, mut rows) = ([None; 3], [None; 3]);
+        for index in 0..3 {
+            let step = index as i64;
+            columns[index] = self.wrap.index(near.first[0] + step, size[0]);
+            rows[index] = self.wrap.index(near.first[1] + step, size[1]);
+        }
         let window = Window {
             columns: &columns,
             rows: &rows,
@@ -116,6 +121,7 @@ impl Sampler {
         }
     }
 
+    #[inline(never)]
     fn upright_mean(&self, scratch: &mut Scratch, centre: [f64; 2], extent: [f64; 2]) -> [f32; 4] {
         let level = self.level(extent);
         let density = self.density(level);
@@ -140,6 +146,7 @@ impl Sampler {
         self.pyramid.sum(level, scratch.buffers.window())
     }
 
+    #[inline(never)]
     fn turned_mean(
         &self,
         scratch: &mut Scratch,

@@ -19,6 +19,7 @@ pub(super) struct Near {
 
 impl Near {
     /// What the sample around `centre` with these sides sees, all in pixels; `None` if it is too large.
+    #[inline(always)]
     pub(super) fn of(centre: [f64; 2], [across, along]: [[f64; 2]; 2]) -> Option<Near> {
         let (across, along) = (
             across.map(|part| part as f32),
@@ -34,10 +35,12 @@ impl Near {
         let middle = centre.map(floor);
         let away = [0, 1].map(|axis| (centre[axis] - middle[axis] as f64) as f32 - 0.5);
         let [wide, tall] = [0, 1].map(|axis| seen(away[axis], squares[axis].sqrt()));
-        let weights = std::array::from_fn(|index| {
+        let mut weights = [0.0; 9];
+        for (index, weight) in weights.iter_mut().enumerate() {
             let (x, y) = (index % 3, index / 3);
-            wide.weights[x] * tall.weights[y] + covariance * wide.slopes[x] * tall.slopes[y]
-        });
+            let slope = covariance * wide.slopes[x] * tall.slopes[y];
+            *weight = wide.weights[x] * tall.weights[y] + slope;
+        }
         let first = middle.map(|middle| middle - 1);
         Some(Near { first, weights })
     }
@@ -52,6 +55,7 @@ struct Seen {
 }
 
 /// A box of a width, whose middle is `away` from the centre of the middle pixel.
+#[inline(always)]
 fn seen(away: f32, width: f32) -> Seen {
     let (start, end) = (away - 0.5 * width, away + 0.5 * width);
     // The mean of what lies beyond the centre, and how much of the box does.

@@ -102,11 +102,18 @@ impl Wrap {
     }
 
     /// Which of `count` pixels stands at `index`.
+    #[inline]
     pub(super) fn index(self, index: i64, count: usize) -> Option<usize> {
         let last = count as i64 - 1;
-        if (0..=last).contains(&index) {
-            return Some(index as usize);
+        match (0..=last).contains(&index) {
+            true => Some(index as usize),
+            false => self.beyond(index, last),
         }
+    }
+
+    /// The same for an index that is none of 0 to `last`.
+    #[inline(never)]
+    fn beyond(self, index: i64, last: i64) -> Option<usize> {
         let wrapped = match self {
             Wrap::Repeat => index.rem_euclid(last + 1),
             Wrap::Mirror => {
@@ -155,6 +162,7 @@ pub(super) fn write(
 }
 
 /// The largest whole number that is not above `value`, which an i64 can hold.
+#[inline]
 pub(super) fn floor(value: f64) -> i64 {
     let whole = value as i64;
     whole - i64::from(whole as f64 > value)
