@@ -201,17 +201,18 @@ impl Kernel for Picture {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let mut sampler = self.sampler.scratch();
-        for index in 0..block.inputs[0].values.len() {
-            let [u, v] = [0, 1].map(|axis| {
-                let column = block.inputs[axis];
-                let spread = column.spread.map(|along| f64::from(along[index]));
-                (f64::from(column.values[index]), spread)
-            });
-            let [r, g, b, alpha] = self.sampler.mean(&mut sampler, [u.0, v.0], [u.1, v.1]);
+        let mut scratch = self.sampler.scratch();
+        let [u, v] = [block.inputs[0], block.inputs[1]];
+        for index in 0..u.values.len() {
+            let at = |column: &[f32]| f64::from(column[index]);
+            let point = [at(u.values), at(v.values)];
+            let [across, along] = [u.spread, v.spread];
+            let spread = [[at(across[0]), at(across[1])], [at(along[0]), at(along[1])]];
+            let [r, g, b, alpha] = self.sampler.mean(&mut scratch, point, spread);
             // Colours come multiplied by the opacity.
             let scale = match self.is_raw {
                 true => 1.0,
+                false if alpha == 1.0 => 1.0,
                 false if alpha > 0.0 => 1.0 / alpha,
                 false => 0.0,
             };
