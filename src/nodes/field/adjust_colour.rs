@@ -12,7 +12,7 @@ use crate::value::{Type, Unit, Value};
 /// Changes hue, saturation, brightness and contrast.
 pub static KIND: Kind = Kind {
     name: "adjust_colour",
-    version: 1,
+    version: 2,
     about: "Changes hue, saturation, brightness and contrast of a colour, each without the others.",
     source: "Ottosson 2020 (Oklab); middle grey of linear 0.18",
     inputs: &[
@@ -72,38 +72,61 @@ impl Kernel for Adjust {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
+        let mut turn = Turn::by(0.0);
         for index in 0..block.inputs[0].values.len() {
             let input: [f64; 7] =
                 std::array::from_fn(|column| f64::from(block.inputs[column].values[index]));
-            for (output, part) in block.outputs.iter_mut().zip(adjusted(input)) {
+            // Hardly any hue changes from sample to sample.
+            if turn.hue != input[3] {
+                turn = Turn::by(input[3]);
+            }
+            for (output, part) in block.outputs.iter_mut().zip(adjusted(input, &turn)) {
                 output[index] = part as f32;
             }
         }
     }
 }
 
-fn adjusted([r, g, b, hue, saturation, brightness, contrast]: [f64; 7]) -> [f64; 3] {
+/// A turn around the circle of hues, in degrees, and its sine and cosine.
+struct Turn {
+    hue: f64,
+    sine: f64,
+    cosine: f64,
+}
+
+impl Turn {
+    fn by(hue: f64) -> Turn {
+        let (sine, cosine) = (libm::sin(hue.to_radians()), libm::cos(hue.to_radians()));
+        Turn { hue, sine, cosine }
+    }
+}
+
+/// Lightness of middle grey: the cube root of 0.18.
+const MIDDLE: f64 = 0.564_621_617_328_617;
+
+fn adjusted(input: [f64; 7], turn: &Turn) -> [f64; 3] {
+    let [r, g, b, hue, saturation, brightness, contrast] = input;
     let bright = [r, g, b].map(|part| part * brightness);
     // Untouched colours keep their bits.
     if (hue, saturation, contrast) == (0.0, 1.0, 1.0) {
         return bright;
     }
     let [lightness, a, b] = to_oklab(bright);
-    let (sine, cosine) = (libm::sin(hue.to_radians()), libm::cos(hue.to_radians()));
-    let middle = libm::cbrt(0.18);
     let turned = [
-        middle + contrast * (lightness - middle),
-        saturation * (a * cosine - b * sine),
-        saturation * (a * sine + b * cosine),
+        MIDDLE + contrast * (lightness - MIDDLE),
+        saturation * (a * turn.cosine - b * turn.sine),
+        saturation * (a * turn.sine + b * turn.cosine),
     ];
     from_oklab(turned).map(|part| part.max(0.0))
 }
 
 /// Oklab of a linear Rec. 709 colour, with the matrices of Ottosson 2020.
 fn to_oklab([r, g, b]: [f64; 3]) -> [f64; 3] {
-    let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
-    let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
-    let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
+    // As exact as the columns are.
+    let root = |part: f64| f64::from(libm::cbrtf(part as f32));
+    let l = root(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
+    let m = root(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
+    let s = root(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
     [
         0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
         1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,

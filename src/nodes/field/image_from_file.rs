@@ -6,9 +6,11 @@
 //! turned. Translucent pixels count by their opacity. Orientation notes and colour profiles are not applied.
 
 mod footprint;
+mod near;
 mod pyramid;
 mod source;
 mod weights;
+mod window;
 
 use crate::colour::luminance;
 use crate::field::{Block, Field, Kernel, Sampling};
@@ -23,7 +25,7 @@ use weights::{Interpolation, Wrap};
 /// A picture as fields.
 pub static KIND: Kind = Kind {
     name: "image_from_file",
-    version: 1,
+    version: 2,
     about: "Shows a picture on a flat piece, at its size in mm and averaged over each pixel.",
     source: "own construction: box filter over the reconstruction filters of Keys 1981, on reduced copies after \
              Williams 1983",
@@ -195,21 +197,22 @@ impl Kernel for Picture {
     }
 
     fn nanoseconds(&self) -> f32 {
-        200.0
+        60.0
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let mut sampler = self.sampler.scratch();
-        for index in 0..block.inputs[0].values.len() {
-            let [u, v] = [0, 1].map(|axis| {
-                let column = block.inputs[axis];
-                let spread = column.spread.map(|along| f64::from(along[index]));
-                (f64::from(column.values[index]), spread)
-            });
-            let [r, g, b, alpha] = self.sampler.mean(&mut sampler, [u.0, v.0], [u.1, v.1]);
+        let mut scratch = self.sampler.scratch();
+        let [u, v] = [block.inputs[0], block.inputs[1]];
+        for index in 0..u.values.len() {
+            let at = |column: &[f32]| f64::from(column[index]);
+            let point = [at(u.values), at(v.values)];
+            let [across, along] = [u.spread, v.spread];
+            let spread = [[at(across[0]), at(across[1])], [at(along[0]), at(along[1])]];
+            let [r, g, b, alpha] = self.sampler.mean(&mut scratch, point, spread);
             // Colours come multiplied by the opacity.
             let scale = match self.is_raw {
                 true => 1.0,
+                false if alpha == 1.0 => 1.0,
                 false if alpha > 0.0 => 1.0 / alpha,
                 false => 0.0,
             };

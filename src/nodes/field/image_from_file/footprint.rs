@@ -3,8 +3,10 @@
 //! Where the sample's sides run along the picture's rows and columns the mean is separable and exact, on the largest
 //! copy of which it covers few pixels. Elsewhere it is the mean of points spread evenly over the sample.
 
+use super::near::Near;
 use super::pyramid::Pyramid;
-use super::weights::{self, Interpolation, Wrap};
+use super::weights::{self, Interpolation, Wrap, floor};
+use super::window::{Buffers, Points, Window};
 
 /// A picture in its place.
 #[derive(Debug)]
@@ -18,11 +20,12 @@ pub(super) struct Sampler {
     pub(super) interpolation: Interpolation,
 }
 
-/// Buffers for the weights of columns and rows.
+/// Buffers for the weights of columns, rows and pixels.
 #[derive(Default)]
 pub(super) struct Scratch {
     columns: Vec<(Option<usize>, f32)>,
     rows: Vec<(Option<usize>, f32)>,
+    buffers: Buffers,
 }
 
 /// Least number of pixels of a reduced copy that a sample covers along its shorter side.
@@ -33,6 +36,9 @@ const LONGEST: f64 = 64.0;
 
 /// Skewness, as a share of a sample's own sides, below which it counts as upright.
 const UPRIGHT: f64 = 0.01;
+
+/// Most pixels of a copy that are weighed at once.
+const WINDOW: f64 = 4096.0;
 
 /// Farthest from the picture that is computed, in pixels.
 const FARTHEST: f64 = 1e12;
@@ -45,6 +51,7 @@ impl Sampler {
 
     /// The mean around a point in mm whose coordinates change by `spread` from sample to sample; the colour is
     /// multiplied by the opacity, which is the last part.
+    #[inline(always)]
     pub(super) fn mean(
         &self,
         scratch: &mut Scratch,
@@ -62,12 +69,34 @@ impl Sampler {
         let sides = [
             [across[0] * scale[0], -along[0] * scale[1]],
             [across[1] * scale[0], -along[1] * scale[1]],
-        ];
-        let sizes = [width, height];
+        ]
+        .map(|side| side.map(|part| part.clamp(-FARTHEST, FARTHEST)));
+        if self.interpolation == Interpolation::Linear
+            && let Some(near) = Near::of([x, y], sides)
+        {
+            return self.near_mean(&near);
+        }
         match upright(sides) {
             Some(extent) => self.upright_mean(scratch, [x, y], extent),
-            None => self.turned_mean(scratch, [x, y], sides, sizes),
+            None => self.turned_mean(scratch, [x, y], sides, [width, height]),
         }
+    }
+
+    #[inline]
+    fn near_mean(&self, near: &Near) -> [f32; 4] {
+        let size = self.pyramid.size(0);
+        let (mut columns, mut rows) = ([None; 3], [None; 3]);
+        for index in 0..3 {
+            let step = index as i64;
+            columns[index] = self.wrap.index(near.first[0] + step, size[0]);
+            rows[index] = self.wrap.index(near.first[1] + step, size[1]);
+        }
+        let window = Window {
+            columns: &columns,
+            rows: &rows,
+            weights: &near.weights,
+        };
+        self.pyramid.sum(0, window)
     }
 
     /// The copy of which a sample with sides of these lengths covers few pixels.
@@ -76,22 +105,26 @@ impl Sampler {
         let mut level = 0;
         let mut factor = 1.0;
         let last = self.pyramid.levels() - 1;
-        while level < last && (short / (2.0 * factor) >= COVERED || long / factor > LONGEST) {
+        while level < last && (short >= 2.0 * COVERED * factor || long > LONGEST * factor) {
             level += 1;
             factor *= 2.0;
         }
         level
     }
 
-    /// Sides of a pixel of a copy, in pixels of the picture.
-    fn texel(&self, level: usize) -> [f64; 2] {
+    /// Pixels of a copy for each pixel of the picture, along both axes.
+    fn density(&self, level: usize) -> [f64; 2] {
         let (whole, part) = (self.pyramid.size(0), self.pyramid.size(level));
-        [0, 1].map(|axis| whole[axis] as f64 / part[axis] as f64)
+        match level {
+            0 => [1.0, 1.0],
+            _ => [0, 1].map(|axis| part[axis] as f64 / whole[axis] as f64),
+        }
     }
 
+    #[inline(never)]
     fn upright_mean(&self, scratch: &mut Scratch, centre: [f64; 2], extent: [f64; 2]) -> [f32; 4] {
         let level = self.level(extent);
-        let texel = self.texel(level);
+        let density = self.density(level);
         let interpolation = match level {
             0 => self.interpolation,
             // Pixels of a copy are means over areas: nothing lies between them.
@@ -103,33 +136,17 @@ impl Sampler {
             .enumerate()
         {
             // No more than the smallest copy can be counted.
-            let width = (extent[axis] / texel[axis]).min(4096.0);
-            let span = [centre[axis] / texel[axis], width];
+            let width = (extent[axis] * density[axis]).min(4096.0);
+            let span = [centre[axis] * density[axis], width];
             weights::write(weights, span, interpolation, self.wrap, size[axis]);
         }
-        self.sum(scratch, level)
+        scratch
+            .buffers
+            .set_products(&scratch.columns, &scratch.rows);
+        self.pyramid.sum(level, scratch.buffers.window())
     }
 
-    /// The sum of the pixels of a copy by the weights of their columns and rows.
-    fn sum(&self, scratch: &Scratch, level: usize) -> [f32; 4] {
-        let mut sum = [0.0f32; 4];
-        for (y, tall) in &scratch.rows {
-            let Some(y) = y else { continue };
-            let mut row = [0.0f32; 4];
-            for (x, wide) in &scratch.columns {
-                let Some(x) = x else { continue };
-                let texel = self.pyramid.texel(level, *x, *y);
-                for (row, part) in row.iter_mut().zip(texel) {
-                    *row += part * wide;
-                }
-            }
-            for (sum, row) in sum.iter_mut().zip(row) {
-                *sum += row * tall;
-            }
-        }
-        sum
-    }
-
+    #[inline(never)]
     fn turned_mean(
         &self,
         scratch: &mut Scratch,
@@ -139,36 +156,58 @@ impl Sampler {
     ) -> [f32; 4] {
         let lengths = sides.map(|[x, y]| (x * x + y * y).sqrt().min(4.0 * (sizes[0] + sizes[1])));
         let level = self.level(lengths);
-        let texel = self.texel(level);
         let size = self.pyramid.size(level);
+        let points = self.points(level, centre, sides, lengths);
         let interpolation = match level {
             0 => self.interpolation,
             _ => Interpolation::Linear,
         };
-        // Enough points that no pixel of the copy is passed over.
-        let smallest = texel[0].min(texel[1]);
-        let between = if level == 0 { 1.0 } else { 0.0 };
-        let counts =
-            lengths.map(|length| (length / smallest + between).ceil().clamp(1.0, LONGEST) as usize);
+        let [wide, tall] = [0, 1].map(|axis| {
+            let [start, end] = points.range(axis);
+            end - start + 1.0
+        });
+        let buffers = &mut scratch.buffers;
         let mut sum = [0.0f32; 4];
-        for index in 0..counts[0] * counts[1] {
-            let at = [index % counts[0], index / counts[0]];
-            let share = [0, 1].map(|side| (at[side] as f64 + 0.5) / counts[side] as f64 - 0.5);
-            let point = [0, 1]
-                .map(|axis| centre[axis] + share[0] * sides[0][axis] + share[1] * sides[1][axis]);
-            for (axis, weights) in [&mut scratch.columns, &mut scratch.rows]
-                .into_iter()
-                .enumerate()
-            {
-                let span = [point[axis] / texel[axis], 0.0];
-                weights::write(weights, span, interpolation, self.wrap, size[axis]);
-            }
-            let found = self.sum(scratch, level);
-            for (sum, found) in sum.iter_mut().zip(found) {
-                *sum += found;
+        if wide * tall <= WINDOW {
+            buffers.set_points(&points, interpolation, self.wrap, size);
+            sum = self.pyramid.sum(level, buffers.window());
+        } else {
+            for point in points.each() {
+                buffers.set_points(&point, interpolation, self.wrap, size);
+                let found = self.pyramid.sum(level, buffers.window());
+                sum = std::array::from_fn(|part| sum[part] + found[part]);
             }
         }
-        sum.map(|part| part / (counts[0] * counts[1]) as f32)
+        let share = 1.0 / (points.counts[0] * points.counts[1]) as f32;
+        sum.map(|part| part * share)
+    }
+
+    /// Enough points of a turned sample that no pixel of the copy is passed over.
+    fn points(
+        &self,
+        level: usize,
+        centre: [f64; 2],
+        sides: [[f64; 2]; 2],
+        lengths: [f64; 2],
+    ) -> Points {
+        let density = self.density(level);
+        let densest = density[0].max(density[1]);
+        let between = if level == 0 { 1.0 } else { 0.0 };
+        let counts = lengths.map(|length| {
+            let enough = -floor(-(length * densest + between));
+            enough.clamp(1, LONGEST as i64) as usize
+        });
+        let steps = [0, 1]
+            .map(|side| [0, 1].map(|axis| sides[side][axis] * density[axis] / counts[side] as f64));
+        let back = [0, 1].map(|side| 0.5 * (counts[side] - 1) as f64);
+        let first = [0, 1].map(|axis| {
+            centre[axis] * density[axis] - back[0] * steps[0][axis] - back[1] * steps[1][axis]
+        });
+        Points {
+            first,
+            steps,
+            counts,
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! A picture and its reduced copies, each half as large as the one before (Williams 1983).
 
+use super::window::Window;
+
 /// The pixels of a picture as they were decoded.
 #[derive(Debug)]
 pub(super) struct Base {
@@ -24,26 +26,45 @@ pub(super) enum Codes {
 
 impl Base {
     fn texel(&self, index: usize) -> [f32; 4] {
-        let texel = match &self.codes {
-            Codes::Eight(codes, table) => decoded(codes, table, index),
-            Codes::Sixteen(codes, table) => decoded(codes, table, index),
-            Codes::Floats(values) => values[index],
-        };
-        match self.is_weighed {
-            true => [
-                texel[0] * texel[3],
-                texel[1] * texel[3],
-                texel[2] * texel[3],
-                texel[3],
-            ],
+        match &self.codes {
+            Codes::Eight(codes, table) => self.weighed(decoded(codes, table, index)),
+            Codes::Sixteen(codes, table) => self.weighed(decoded(codes, table, index)),
+            Codes::Floats(values) => self.weighed(values[index]),
+        }
+    }
+
+    /// The colour multiplied by the opacity, if it still has to be.
+    fn weighed(&self, texel: [f32; 4]) -> [f32; 4] {
+        let [r, g, b, opacity] = texel;
+        match self.is_weighed && opacity != 1.0 {
+            true => [r * opacity, g * opacity, b * opacity, opacity],
             false => texel,
+        }
+    }
+
+    fn sum(&self, window: Window<'_>) -> [f32; 4] {
+        let width = self.size[0] as usize;
+        match &self.codes {
+            Codes::Eight(codes, table) => {
+                window.sum(|x, y| self.weighed(decoded(codes, table, y * width + x)))
+            }
+            Codes::Sixteen(codes, table) => {
+                window.sum(|x, y| self.weighed(decoded(codes, table, y * width + x)))
+            }
+            Codes::Floats(values) => window.sum(|x, y| self.weighed(values[y * width + x])),
         }
     }
 }
 
 fn decoded<C: Copy + Into<u32>>(codes: &[C], table: &[f32], index: usize) -> [f32; 4] {
-    let code = |part: usize| Into::<u32>::into(codes[4 * index + part]) as usize;
-    let opacity = code(3) as f32 / (table.len() - 1) as f32;
+    let codes = &codes[4 * index..4 * index + 4];
+    let code = |part: usize| Into::<u32>::into(codes[part]) as usize;
+    let largest = table.len() - 1;
+    // Most pixels are opaque, and dividing is slow.
+    let opacity = match code(3) {
+        opacity if opacity == largest => 1.0,
+        opacity => opacity as f32 / largest as f32,
+    };
     [table[code(0)], table[code(1)], table[code(2)], opacity]
 }
 
@@ -87,11 +108,22 @@ impl Pyramid {
     }
 
     /// A pixel of a copy.
-    pub(super) fn texel(&self, level: usize, x: usize, y: usize) -> [f32; 4] {
+    fn texel(&self, level: usize, x: usize, y: usize) -> [f32; 4] {
         let index = y * self.size(level)[0] + x;
         match level {
             0 => self.base.texel(index),
             _ => self.reduced[level - 1].texels[index],
+        }
+    }
+
+    /// The sum of the pixels of a copy in a window, by their weights.
+    pub(super) fn sum(&self, level: usize, window: Window<'_>) -> [f32; 4] {
+        match level {
+            0 => self.base.sum(window),
+            _ => {
+                let Reduced { size, texels } = &self.reduced[level - 1];
+                window.sum(|x, y| texels[y * size[0] + x])
+            }
         }
     }
 

@@ -36,6 +36,15 @@ impl Interpolation {
         }
     }
 
+    /// Most pixels of a row that a point sees.
+    pub(super) fn taps(self) -> usize {
+        match self {
+            Interpolation::Nearest => 1,
+            Interpolation::Linear => 2,
+            Interpolation::Cubic => 4,
+        }
+    }
+
     /// The kernel at the distance `x` from the centre.
     fn at(self, x: f64) -> f64 {
         let d = x.abs();
@@ -93,8 +102,18 @@ impl Wrap {
     }
 
     /// Which of `count` pixels stands at `index`.
+    #[inline]
     pub(super) fn index(self, index: i64, count: usize) -> Option<usize> {
         let last = count as i64 - 1;
+        match (0..=last).contains(&index) {
+            true => Some(index as usize),
+            false => self.beyond(index, last),
+        }
+    }
+
+    /// The same for an index that is none of 0 to `last`.
+    #[inline(never)]
+    fn beyond(self, index: i64, last: i64) -> Option<usize> {
         let wrapped = match self {
             Wrap::Repeat => index.rem_euclid(last + 1),
             Wrap::Mirror => {
@@ -102,7 +121,6 @@ impl Wrap {
                 folded.min(2 * last + 1 - folded)
             }
             Wrap::Clamp => index.clamp(0, last),
-            Wrap::Blank if (0..=last).contains(&index) => index,
             Wrap::Blank => return None,
         };
         usize::try_from(wrapped).ok()
@@ -121,12 +139,9 @@ pub(super) fn write(
     count: usize,
 ) {
     into.clear();
-    let reach = 0.5 * width + interpolation.radius();
-    let (first, last) = (
-        (middle - reach - 0.5).floor(),
-        (middle + reach - 0.5).ceil(),
-    );
-    for index in first as i64..=last as i64 {
+    let reach = 0.5 * width + interpolation.radius() - 0.5;
+    let (first, last) = (floor(middle - reach), floor(middle + reach));
+    for index in first..=last {
         let away = middle - (index as f64 + 0.5);
         let weight = match width < POINT {
             true => interpolation.at(away),
@@ -135,10 +150,22 @@ pub(super) fn write(
                 (interpolation.integral(ends[0]) - interpolation.integral(ends[1])) / width
             }
         };
-        if weight != 0.0 {
-            into.push((wrap.index(index, count), weight as f32));
+        if weight == 0.0 {
+            continue;
+        }
+        let found = wrap.index(index, count);
+        match into.last_mut() {
+            Some((last, sum)) if *last == found => *sum += weight as f32,
+            _ => into.push((found, weight as f32)),
         }
     }
+}
+
+/// The largest whole number that is not above `value`, which an i64 can hold.
+#[inline]
+pub(super) fn floor(value: f64) -> i64 {
+    let whole = value as i64;
+    whole - i64::from(whole as f64 > value)
 }
 
 #[cfg(test)]
