@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use yosegi::engine::{Cancel, Engine, Event, Options, Render, RenderedMap, ReusedFrom, RunError};
-use yosegi::graph::{Graph, Settings, load_text};
+use yosegi::graph::{Graph, Settings, load};
 use yosegi::world::{Memory, World};
 
 /// An engine with its world.
@@ -30,6 +30,7 @@ impl Workshop {
             "spruce_log/Gran_1_pith.json",
             "spruce_log/Gran_1_knots.json",
             "spruce_bar/spruce_bar.png",
+            "measured_tree/tree.csv",
         ] {
             files.insert(Path::new(folder).join(asset), asset_bytes(asset));
         }
@@ -57,7 +58,13 @@ impl Workshop {
     }
 
     pub(crate) fn graph(&self, recipe: &str) -> Graph {
-        load_text(self.folder.join("recipe.ron"), recipe, &Settings::default())
+        // A world of its own, so that recipes are no files of the workshop.
+        let world = Memory::default();
+        let path = self.folder.join("recipe.ron");
+        world.insert(&path, recipe);
+        let compound = fs::read("graphs/nodes/cherry.ron").unwrap();
+        world.insert(self.folder.join("nodes/cherry.ron"), compound);
+        load(&world, &path, &Settings::default())
             .unwrap_or_else(|wrong| panic!("{}", yosegi::diagnostics::render_all(&wrong)))
             .graph
     }
