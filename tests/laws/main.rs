@@ -11,6 +11,7 @@ mod levels;
 #[allow(dead_code, reason = "laws need no log of events")]
 mod workshop;
 
+use petgraph::graph::NodeIndex;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +20,7 @@ use yosegi::engine::{Cancel, Event, Options, RunError, SampledField};
 use yosegi::graph::{Graph, Settings, Source, load, load_text};
 use yosegi::node::{Input, Kind, Presence, common_domain};
 use yosegi::nodes::{KINDS, kind};
-use yosegi::value::{Domain, Type};
+use yosegi::value::{Domain, Type, Value};
 use yosegi::world::Disk;
 
 /// Loads the recipe of an example; neither errors nor warnings are allowed.
@@ -227,6 +228,19 @@ fn every_field_has_a_name_for_each_column() {
     }
 }
 
+/// The number of channels that the outputs of a recipe name.
+fn channels(graph: &Graph) -> usize {
+    let of_output = |index: &NodeIndex| {
+        let node = &graph.nodes[*index];
+        let (position, _) = node.kind.input("channels").unwrap();
+        match &node.inputs[position].source {
+            Source::Literal(Value::Names(names)) => names.len(),
+            other => panic!("{other:?}"),
+        }
+    };
+    graph.outputs.iter().map(of_output).sum()
+}
+
 #[test]
 fn every_recipe_of_the_project_renders() {
     let mut recipes = 0;
@@ -248,7 +262,7 @@ fn every_recipe_of_the_project_renders() {
         let maps = run
             .result
             .unwrap_or_else(|error| panic!("{}: {error:?}", path.display()));
-        assert!(maps.len() >= 2, "{}", path.display());
+        assert_eq!(maps.len(), channels(&loaded.graph), "{}", path.display());
         recipes += 1;
     }
     assert!(recipes >= 9);

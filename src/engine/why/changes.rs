@@ -3,7 +3,7 @@
 use super::Cause;
 use super::record::{NodeRecord, RunRecord};
 use crate::engine::plan::Plan;
-use crate::graph::{Arithmetic, Binding, Link, Source};
+use crate::graph::{Binding, Source};
 use petgraph::graph::NodeIndex;
 
 /// The nodes of a plan against the record of the last run.
@@ -131,28 +131,8 @@ impl<'a> Changes<'a> {
 
     /// The first node that a source links to and that has changed.
     fn changed_link(&self, source: &Source) -> Option<String> {
-        let mut links = vec![];
-        add_links(source, &mut links);
-        let link = links.into_iter().find(|link| self.has_changed(link.node))?;
+        let mut links = source.links().into_iter();
+        let link = links.find(|link| self.has_changed(link.node))?;
         Some(self.plan.graph.nodes[link.node].name.to_string())
-    }
-}
-
-fn add_links(source: &Source, links: &mut Vec<Link>) {
-    match source {
-        Source::Absent | Source::Literal(_) | Source::File(_) => {}
-        Source::Link(link) => links.push(*link),
-        Source::Arithmetic(arithmetic) => add_operands(arithmetic, links),
-        Source::Channels(channels) => channels.iter().for_each(|(_, part)| add_links(part, links)),
-    }
-}
-
-fn add_operands(arithmetic: &Arithmetic, links: &mut Vec<Link>) {
-    match arithmetic {
-        Arithmetic::Number(_) => {}
-        Arithmetic::Link(link) => links.push(*link),
-        Arithmetic::Negate(inner) => add_operands(inner, links),
-        Arithmetic::Binary(_, sides) => sides.iter().for_each(|it| add_operands(it, links)),
-        Arithmetic::Call(_, arguments) => arguments.iter().for_each(|it| add_operands(it, links)),
     }
 }
