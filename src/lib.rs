@@ -21,4 +21,5 @@ pub mod node;
 pub mod nodes;
 pub mod output;
 pub mod value;
+pub mod watch;
 pub mod world;

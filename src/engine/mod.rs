@@ -15,6 +15,7 @@ mod memory;
 mod pace;
 mod paint;
 mod plan;
+mod preview;
 mod progress;
 mod render;
 mod reuse;
@@ -90,7 +91,7 @@ impl Default for Options {
 pub struct Engine {
     world: Arc<dyn World>,
     options: Options,
-    memory: Memory,
+    memory: Arc<Memory>,
     store: Option<Store>,
     threads: rayon::ThreadPool,
 }
@@ -137,20 +138,31 @@ impl Engine {
     /// If the system gives no threads.
     pub fn new(world: Arc<dyn World>, mut options: Options) -> io::Result<Engine> {
         options.tile = options.tile.clamp(1, LARGEST_TILE);
-        let threads = rayon::ThreadPoolBuilder::new()
-            .num_threads(options.threads.unwrap_or(0))
-            .build()
-            .map_err(io::Error::other)?;
+        let threads = threads(&options)?;
         let store = options
             .store
             .clone()
             .map(|folder| Store::new(Arc::clone(&world), folder));
         Ok(Engine {
-            memory: Memory::new(options.memory),
+            memory: Arc::new(Memory::new(options.memory)),
             world,
             options,
             store,
             threads,
+        })
+    }
+
+    /// An engine that remembers the same things and has threads of its own.
+    ///
+    /// # Errors
+    /// If the system gives no threads.
+    pub fn beside(&self) -> io::Result<Engine> {
+        Ok(Engine {
+            world: Arc::clone(&self.world),
+            options: self.options.clone(),
+            memory: Arc::clone(&self.memory),
+            store: self.store.clone(),
+            threads: threads(&self.options)?,
         })
     }
 
@@ -185,8 +197,15 @@ impl Engine {
             cache: self
                 .memory
                 .is_enabled()
-                .then_some(&self.memory as &dyn ColumnCache),
+                .then_some(&*self.memory as &dyn ColumnCache),
             filtering: self.options.filtering,
         }
     }
+}
+
+fn threads(options: &Options) -> io::Result<rayon::ThreadPool> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads.unwrap_or(0))
+        .build()
+        .map_err(io::Error::other)
 }

@@ -13,6 +13,7 @@ use crate::graph::{Graph, no_output};
 use crate::key::Key;
 use crate::output::{self, Encoder, Faults, MapRequest};
 use crate::value::Maps;
+use crate::world::World;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -61,8 +62,21 @@ impl Engine {
     /// What is wrong with nodes or files, which limit was reached, or that the run was cancelled. Maps
     /// that were finished before stay in place; of others nothing is left.
     pub fn render(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
+        self.render_reading(request, &*self.world)
+    }
+
+    /// As [`Engine::render`], but reads the files that the recipe names from `inputs`, such as a
+    /// [`Traced`](crate::world::Traced) world.
+    ///
+    /// # Errors
+    /// As [`Engine::render`].
+    pub fn render_reading(
+        &self,
+        request: &Render<'_>,
+        inputs: &dyn World,
+    ) -> Result<Vec<RenderedMap>, RunError> {
         self.threads.install(|| {
-            let result = self.render_outputs(request);
+            let result = self.render_outputs(request, inputs);
             if matches!(result, Err(RunError::Cancelled)) {
                 request.listener.hear(Event::Cancelled);
             }
@@ -70,9 +84,13 @@ impl Engine {
         })
     }
 
-    fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
+    fn render_outputs(
+        &self,
+        request: &Render<'_>,
+        inputs: &dyn World,
+    ) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
-        let plan = self.plan(request.graph, &wanted)?;
+        let plan = Plan::new(request.graph, &wanted, inputs)?;
         let protected = files::Protected::new(&*self.world, &plan, self.options.store.as_deref());
         let outputs = self.outputs(request, &plan, &protected, &wanted);
         let known: Vec<Option<KnownOutput>> = outputs.iter().map(Output::known).collect();
@@ -234,7 +252,7 @@ impl Output<'_> {
             return Ok(self.announce(placed.into_iter().map(|known| &known.map)));
         }
         // The store has lost a map since it was asked: the output has to be made after all.
-        let alone = self.engine.plan(self.request.graph, &[self.index])?;
+        let alone = self.plan.part(&[self.index]);
         let (listener, cancel) = (self.request.listener, &self.request.cancel);
         let built = self.engine.build(&alone, listener, cancel)?;
         built.complete()?;

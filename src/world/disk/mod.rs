@@ -1,6 +1,9 @@
 //! The world on disk: files are replaced by a rename, so a reader sees the old one or the new one.
 
-use super::{Listed, PendingFile, World};
+mod notices;
+
+use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
+use notices::DiskNotices;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -73,6 +76,14 @@ impl World for Disk {
         } else {
             fs::remove_file(path)
         }
+    }
+
+    fn stamp(&self, path: &Path) -> io::Result<Stamp> {
+        Ok(Stamp::of(&fs::metadata(path)?))
+    }
+
+    fn notices(&self, wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
+        Ok(Box::new(DiskNotices::new(wake)?))
     }
 }
 
