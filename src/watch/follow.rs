@@ -159,6 +159,12 @@ impl Follow {
 
     /// Looks at what was heard of.
     fn look(&mut self, inbox: &Inbox) -> Option<PathBuf> {
+        let now = Instant::now();
+        for session in &mut self.sessions {
+            if inbox.all || session.reads_any(&inbox.paths) {
+                session.stirred = now;
+            }
+        }
         let doubt = if inbox.all {
             Doubt::All
         } else {
@@ -207,6 +213,7 @@ impl Follow {
     fn supersede(&mut self, index: usize) {
         let now = Instant::now();
         self.sessions[index].changed = now;
+        self.sessions[index].stirred = now;
         for other in 0..self.sessions.len() {
             let session = &mut self.sessions[other];
             let State::Running(running) = &session.state else {

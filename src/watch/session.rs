@@ -18,6 +18,9 @@ pub(super) struct Session {
     pub(super) state: State,
     /// When its files were last seen to have changed; the start of the watch at first.
     pub(super) changed: Instant,
+    /// When anything was last heard of its files, or found: a file that is empty each time one looks may
+    /// have been whole in between.
+    pub(super) stirred: Instant,
     /// When something new was last to be seen of it.
     pub(super) shown: Option<Instant>,
     /// The number of its newest run; 0 before the first.
@@ -52,6 +55,7 @@ impl Session {
             followed,
             state: State::Due,
             changed: now,
+            stirred: now,
             shown: None,
             newest: 0,
             trace: Trace::new(),
@@ -66,6 +70,11 @@ impl Session {
         // Before anything was read, and whatever was.
         paths.insert(self.followed.recipe.clone());
         paths
+    }
+
+    /// Whether a change of one of these paths may matter.
+    pub(super) fn reads_any(&self, paths: &BTreeSet<PathBuf>) -> bool {
+        !self.paths().is_disjoint(paths)
     }
 
     /// A path that is not what the newest run has read.
@@ -94,7 +103,7 @@ impl Session {
 
     /// When its mistakes are to be told.
     pub(super) fn tells_at(&self) -> Option<Instant> {
-        matches!(self.state, State::Failing(_)).then(|| self.changed + QUIET)
+        matches!(self.state, State::Failing(_)).then(|| self.stirred + QUIET)
     }
 
     /// Settles what failed, if it is time: what is to be told of it.
