@@ -137,7 +137,6 @@ fn cases(folder: &Folder) -> Vec<Case> {
         ("chain of 10000", chain(10_000)),
         ("chain of 100000", chain(100_000)),
         ("supersampled chain of 900", supersampled(900)),
-        ("arithmetic of 50000 parts", arithmetic(50_000)),
         ("tree of 500000 rows", tree(folder, 500_000)),
         ("20000 branches", branches(20_000)),
     ] {
@@ -214,14 +213,6 @@ fn supersampled(length: usize) -> String {
     text
 }
 
-fn arithmetic(parts: usize) -> String {
-    let sum = vec!["fibre.value"; parts].join(" + 0.001 * ");
-    format!(
-        "(nodes: {{ \"fibre\": solid_noise(size: (5, 5, 150)),
-        \"last\": mix(a: \"#5b3a1e\", b: \"#c8a06e\", amount: \"= {sum}\"),{END}"
-    )
-}
-
 fn tree(folder: &Folder, rows: usize) -> String {
     let mut text = String::from("# unit: mm\nid,parent,x,y,z,radius\n");
     for index in 1..=rows {
@@ -271,13 +262,9 @@ fn photograph(folder: &Folder) -> String {
         .unwrap();
     "(nodes: {
         \"picture\": image_from_file(file: \"noise.png\", size: (600, 600)),
-        \"turned\": transform(of: \"picture.colour\", turn: 30),
-        \"board\": material(base_color: \"picture.colour\", size: (600, 600)),
-    }, outputs: { \"board\": maps(of: \"board\", pixels: (512, 512)) })"
-        .replace(
-            "        \"turned\": transform(of: \"picture.colour\", turn: 30),\n",
-            "",
-        )
+        \"board\": material(base_color: \"picture.colour\"),
+    }, outputs: { \"board\": maps(of: \"board\", size: (600, 600), pixels: (512, 512)) })"
+        .to_owned()
 }
 
 fn pattern(folder: &Folder) -> String {
