@@ -10,6 +10,7 @@
 
 #![forbid(unsafe_code)]
 
+mod cancel;
 pub mod colour;
 pub mod diagnostics;
 pub mod engine;

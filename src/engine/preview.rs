@@ -3,7 +3,6 @@
 use super::event::Event;
 use super::files;
 use super::paint::{Painter, Sheet};
-use super::plan::Plan;
 use super::progress::Meter;
 use super::render::{Output, Render, chosen_outputs};
 use super::{Engine, FlatPiece, RunError};
@@ -14,6 +13,7 @@ use crate::value::{MapFormat, Maps};
 use crate::world::World;
 use petgraph::graph::NodeIndex;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Longest side of the first picture, in pixels.
@@ -35,28 +35,28 @@ impl Engine {
     pub fn preview(
         &self,
         request: &Render<'_>,
-        inputs: &dyn World,
+        inputs: &Arc<dyn World>,
         time: Duration,
     ) -> Result<Vec<PathBuf>, RunError> {
         let end = Instant::now() + time;
+        let run = self.until(&request.cancel, inputs);
         self.threads
-            .install(|| self.preview_outputs(request, inputs, end))
+            .install(|| run.ended(run.preview_outputs(request, end), request.listener))
     }
 
     fn preview_outputs(
         &self,
         request: &Render<'_>,
-        inputs: &dyn World,
         end: Instant,
     ) -> Result<Vec<PathBuf>, RunError> {
         let wanted = chosen_outputs(request)?;
-        let plan = Plan::new(request.graph, &wanted, inputs)?;
+        let plan = self.plan(request.graph, &wanted)?;
         let protected = files::Protected::new(&*self.world, &plan, self.options.store.as_deref());
         let outputs = self.outputs(request, &plan, &protected, &wanted);
         let is_new = |output: &&Output<'_>| output.known().is_none();
         let missing: Vec<&Output<'_>> = outputs.iter().filter(is_new).collect();
         let indices: Vec<NodeIndex> = missing.iter().map(|output| output.index).collect();
-        let built = self.build(&plan.part(&indices), request.listener, &request.cancel)?;
+        let built = self.build(&plan.part(&indices), request.listener)?;
         let there = missing.into_iter().filter(|output| built.has(output.index));
         let there: Vec<&Output<'_>> = there.collect();
         let paths = there

@@ -16,6 +16,7 @@ mod tiff;
 pub use bmp::{LARGEST_BMP, bmp_bytes};
 pub use encode::{Encoder, Faults, MapKind};
 
+use crate::cancel::Cancel;
 use crate::key::Key;
 use crate::value::{FileType, MapFormat};
 use crate::world::World;
@@ -129,13 +130,23 @@ pub fn create(
     path: &Path,
     request: &MapRequest,
 ) -> io::Result<Box<dyn MapWriter>> {
+    create_until(world, path, request, &Cancel::new())
+}
+
+/// As [`create`], for a run that may be cancelled: its rows are then compressed no more.
+pub(crate) fn create_until(
+    world: &dyn World,
+    path: &Path,
+    request: &MapRequest,
+    cancel: &Cancel,
+) -> io::Result<Box<dyn MapWriter>> {
     let start = || -> io::Result<Box<dyn MapWriter>> {
         request.check()?;
         let file = world.create(path)?;
         Ok(match request.format.file_type() {
-            FileType::Png => Box::new(png::PngWriter::new(file, request)?),
-            FileType::Exr => Box::new(exr::ExrWriter::new(file, request)?),
-            FileType::Tiff => Box::new(tiff::TiffWriter::new(file, request)?),
+            FileType::Png => Box::new(png::PngWriter::new(file, request, cancel)?),
+            FileType::Exr => Box::new(exr::ExrWriter::new(file, request, cancel)?),
+            FileType::Tiff => Box::new(tiff::TiffWriter::new(file, request, cancel)?),
             FileType::Bmp => Box::new(bmp::BmpWriter::new(file, request)?),
         })
     };

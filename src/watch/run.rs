@@ -106,9 +106,14 @@ impl Run {
 
     fn outcome(&self) -> Outcome {
         let start = Instant::now();
-        let on_new = || self.mailbox.post(|inbox| inbox.reads = true);
-        let inputs = Traced::new(&*self.world, self.trace.clone(), &on_new);
-        let loaded = match load(&inputs, &self.followed.recipe, &self.followed.settings) {
+        let mailbox = Arc::clone(&self.mailbox);
+        let on_new = move || mailbox.post(|inbox| inbox.reads = true);
+        let inputs: Arc<dyn World> = Arc::new(Traced::new(
+            Arc::clone(&self.world),
+            self.trace.clone(),
+            on_new,
+        ));
+        let loaded = match load(&*inputs, &self.followed.recipe, &self.followed.settings) {
             Ok(loaded) => loaded,
             Err(diagnostics) => return Outcome::Failed(Failed::Loading(diagnostics)),
         };
@@ -143,7 +148,7 @@ impl Run {
     }
 
     /// Writes the small pictures, if there are to be any; gives the time that took.
-    fn preview(&self, graph: &Graph, inputs: &dyn World) -> Result<Duration, RunError> {
+    fn preview(&self, graph: &Graph, inputs: &Arc<dyn World>) -> Result<Duration, RunError> {
         if !self.preview {
             return Ok(Duration::ZERO);
         }
@@ -173,7 +178,7 @@ impl Run {
     fn render(
         &self,
         graph: &Graph,
-        inputs: &dyn World,
+        inputs: &Arc<dyn World>,
         collector: &Collector,
     ) -> Result<(), RunError> {
         let listener = |event: Event| {

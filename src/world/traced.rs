@@ -150,24 +150,26 @@ fn of_error(error: &io::Error) -> Key {
 }
 
 /// A world that notes in a trace what is read through it.
-pub struct Traced<'w> {
-    world: &'w dyn World,
+pub struct Traced {
+    world: Arc<dyn World>,
     trace: Trace,
-    /// Called for each path that was not asked about before.
-    on_new: &'w (dyn Fn() + Send + Sync),
+    on_new: OnNew,
 }
 
-impl<'w> Traced<'w> {
+/// Called for each path that was not asked about before.
+type OnNew = Box<dyn Fn() + Send + Sync>;
+
+impl Traced {
     /// Notes what is read from `world` in `trace`, and calls `on_new` after each new path.
     pub fn new(
-        world: &'w dyn World,
+        world: Arc<dyn World>,
         trace: Trace,
-        on_new: &'w (dyn Fn() + Send + Sync),
-    ) -> Traced<'w> {
+        on_new: impl Fn() + Send + Sync + 'static,
+    ) -> Traced {
         Traced {
             world,
             trace,
-            on_new,
+            on_new: Box::new(on_new),
         }
     }
 
@@ -177,7 +179,7 @@ impl<'w> Traced<'w> {
         ask: impl FnOnce() -> io::Result<T>,
         key: fn(&io::Result<T>) -> Key,
     ) -> io::Result<T> {
-        let stamp = question.stamp(self.world);
+        let stamp = question.stamp(&*self.world);
         let said = ask();
         let answer = || Answer {
             key: key(&said),
@@ -190,7 +192,7 @@ impl<'w> Traced<'w> {
     }
 }
 
-impl World for Traced<'_> {
+impl World for Traced {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let question = Question::Read(path.to_owned());
         self.noted(question, || self.world.read(path), of_bytes)
