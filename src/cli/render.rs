@@ -2,7 +2,7 @@
 
 use super::listen::Listen;
 use super::options::{self, EngineArguments, SizeArguments, StoreArguments};
-use super::{Exit, RecipeArguments, Recipes, report};
+use super::{Exit, RecipeArguments, Recipes, report, signals};
 use std::path::{Path, PathBuf};
 use yosegi::engine::{Cancel, Engine, Options, Render, RenderedMap};
 
@@ -31,16 +31,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Exit {
     let cancel = Cancel::new();
-    let switch = cancel.clone();
-    if let Err(error) = ctrlc::set_handler(move || {
-        if switch.is_cancelled() {
-            // Asked twice: do not wait for the next tile.
-            std::process::exit(Exit::Interrupted as i32);
-        }
-        switch.cancel();
-    }) {
-        report::problem(&format!("interrupts will end the program at once: {error}"));
-    }
+    let signals = signals::listen(&cancel);
     let options = match engine_options(arguments) {
         Ok(options) => options,
         Err(problem) => {
@@ -55,8 +46,8 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     let mut worst = Exit::Done;
     for recipe in &arguments.recipes.recipes {
         worst = worst.max(render(arguments, &engine, recipe, &cancel));
-        if cancel.is_cancelled() {
-            return Exit::Interrupted;
+        if let Some(exit) = signals.exit() {
+            return exit;
         }
     }
     worst

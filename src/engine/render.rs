@@ -72,6 +72,7 @@ impl Engine {
 
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
+        self.world.sweep(&request.folder);
         let plan = self.plan(request.graph, &wanted)?;
         let protected = files::Protected::new(&*self.world, &plan, self.options.store.as_deref());
         let outputs = self.outputs(request, &plan, &protected, &wanted);
@@ -336,9 +337,14 @@ impl Output<'_> {
             channel: map.channel.clone(),
         };
         let range = maps.ranges.get(&map.channel).copied();
+        let create = if self.engine.options.durable {
+            output::create_durable
+        } else {
+            output::create
+        };
         Ok(Sheet {
             encoder: Encoder::new(kind, maps.format, range),
-            writer: output::create(&*self.engine.world, &self.path(map), &request)?,
+            writer: create(&*self.engine.world, &self.path(map), &request)?,
             faults: Faults::default(),
         })
     }
