@@ -4,7 +4,7 @@ use super::listen::Listen;
 use super::options::{self, EngineArguments, SizeArguments, StoreArguments};
 use super::{Exit, RecipeArguments, Recipes, report, signals};
 use std::path::{Path, PathBuf};
-use yosegi::engine::{Cancel, Engine, Options, Render, RenderedMap};
+use yosegi::engine::{Cancel, Engine, Options, Render};
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
@@ -71,17 +71,21 @@ fn render(arguments: &Arguments, engine: &Engine, recipe: &Path, cancel: &Cancel
     listener.finish();
     match result {
         Ok(maps) => {
-            announce(&maps, json);
+            announce(maps.into_iter().map(|map| map.path), json);
             Exit::Done
         }
-        Err(error) => report::run_error(&error, json),
+        Err(error) => {
+            announce(listener.placed(), json);
+            report::run_error(&error, json)
+        }
     }
 }
 
-fn announce(maps: &[RenderedMap], json: bool) {
+/// Names the maps that are in place.
+fn announce(maps: impl IntoIterator<Item = PathBuf>, json: bool) {
     if !json {
-        maps.iter()
-            .for_each(|map| report::line(&map.path.display().to_string()));
+        maps.into_iter()
+            .for_each(|map| report::line(&map.display().to_string()));
     }
 }
 

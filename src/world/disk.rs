@@ -1,6 +1,7 @@
 //! The world on disk: files are replaced by a rename, so a reader sees the old one or the new one.
 
 use super::again::Patience;
+use super::sweep;
 use super::unfinished::{self, Unfinished};
 use super::{Listed, PendingFile, World};
 use std::fs::{self, File};
@@ -39,9 +40,13 @@ impl World for Disk {
     }
 
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
-        let path = behind_links(path)?;
-        let folder = folder_of(&path).to_owned();
-        start(path, &folder)
+        let real = behind_links(path)?;
+        let folder = folder_of(&real).to_owned();
+        if real != path {
+            // Whoever sweeps the folder of the link does not come here.
+            self.sweep(&folder);
+        }
+        start(real, &folder)
     }
 
     fn create_aside(&self, path: &Path, aside: &Path) -> io::Result<Box<dyn PendingFile>> {
@@ -49,7 +54,7 @@ impl World for Disk {
     }
 
     fn sweep(&self, folder: &Path) {
-        unfinished::sweep(folder);
+        sweep::sweep(folder);
     }
 
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {

@@ -3,6 +3,7 @@
 mod again;
 mod disk;
 mod memory;
+mod sweep;
 mod unfinished;
 
 pub use disk::Disk;
