@@ -12,6 +12,7 @@ mod options;
 mod render;
 mod report;
 mod sample;
+mod signals;
 mod watch;
 mod why;
 
@@ -28,7 +29,7 @@ struct Arguments {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 a node failed, 2 the recipe or the call is wrong, \
-    3 a file could not be read or written, 4 a limit was reached, 130 interrupted";
+    3 a file could not be read or written, 4 a limit was reached, 129 the terminal has gone, 130 interrupted, 143 terminated";
 
 #[derive(Subcommand)]
 enum Command {
@@ -60,7 +61,9 @@ enum Exit {
     Wrong = 2,
     Files = 3,
     Limit = 4,
+    HungUp = 129,
     Interrupted = 130,
+    Terminated = 143,
 }
 
 /// Changes to a recipe's parameters.

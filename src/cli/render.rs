@@ -2,9 +2,9 @@
 
 use super::listen::Listen;
 use super::options::{self, EngineArguments, SizeArguments, StoreArguments};
-use super::{Exit, RecipeArguments, Recipes, report};
+use super::{Exit, RecipeArguments, Recipes, report, signals};
 use std::path::{Path, PathBuf};
-use yosegi::engine::{Cancel, Engine, Options, Render, RenderedMap};
+use yosegi::engine::{Cancel, Engine, Options, Render};
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
@@ -32,15 +32,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Exit {
     let cancel = Cancel::new();
     let switch = cancel.clone();
-    if let Err(error) = ctrlc::set_handler(move || {
-        if switch.is_cancelled() {
-            // Asked twice: do not wait for the next tile.
-            std::process::exit(Exit::Interrupted as i32);
-        }
-        switch.cancel();
-    }) {
-        report::problem(&format!("interrupts will end the program at once: {error}"));
-    }
+    let signals = signals::listen(move || switch.cancel());
     let options = match engine_options(arguments) {
         Ok(options) => options,
         Err(problem) => {
@@ -55,8 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     let mut worst = Exit::Done;
     for recipe in &arguments.recipes.recipes {
         worst = worst.max(render(arguments, &engine, recipe, &cancel));
-        if cancel.is_cancelled() {
-            return Exit::Interrupted;
+        if let Some(exit) = signals.exit() {
+            return exit;
         }
     }
     worst
@@ -80,17 +72,21 @@ fn render(arguments: &Arguments, engine: &Engine, recipe: &Path, cancel: &Cancel
     listener.finish();
     match result {
         Ok(maps) => {
-            announce(&maps, json);
+            announce(maps.into_iter().map(|map| map.path), json);
             Exit::Done
         }
-        Err(error) => report::run_error(&error, json),
+        Err(error) => {
+            announce(listener.placed(), json);
+            report::run_error(&error, json)
+        }
     }
 }
 
-fn announce(maps: &[RenderedMap], json: bool) {
+/// Names the maps that are in place.
+fn announce(maps: impl IntoIterator<Item = PathBuf>, json: bool) {
     if !json {
-        maps.iter()
-            .for_each(|map| report::line(&map.path.display().to_string()));
+        maps.into_iter()
+            .for_each(|map| report::line(&map.display().to_string()));
     }
 }
 

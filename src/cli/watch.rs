@@ -1,7 +1,7 @@
 //! `yosegi watch`: renders recipes, and again whenever something that they read has changed.
 
 use super::listen::Listen;
-use super::{Exit, bytes, options, render, report};
+use super::{Exit, bytes, options, render, report, signals};
 use serde_json::{Value as Json, json};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -36,6 +36,8 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     };
     let options = Options {
         memory: usize::try_from(arguments.memory).unwrap_or(usize::MAX),
+        // The next save brings the next map: nobody waits for a disk in between.
+        durable: false,
         ..options
     };
     let engine = match options::start(options) {
@@ -56,11 +58,9 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
         Arc::new(move |recipe, told| screen.show(recipe, told)),
     );
     let stop = watch.stop();
-    if let Err(error) = ctrlc::set_handler(move || stop.stop()) {
-        report::problem(&format!("interrupts will end the program at once: {error}"));
-    }
+    let signals = signals::listen(move || stop.stop());
     watch.run();
-    Exit::Interrupted
+    signals.exit().unwrap_or(Exit::Interrupted)
 }
 
 fn followed(arguments: &Arguments, recipe: &Path) -> Followed {

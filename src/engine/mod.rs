@@ -70,6 +70,9 @@ pub struct Options {
     pub store: Option<PathBuf>,
     /// Most pixels that one output may have.
     pub largest_output: u64,
+    /// Whether maps are on the disk before they replace what is there, so that a loss of power leaves the
+    /// one or the other; costs the time that the disk takes.
+    pub durable: bool,
     /// Whether fields are filtered. Off only to show what filtering is good for: this one changes results.
     pub filtering: bool,
 }
@@ -83,6 +86,7 @@ impl Default for Options {
             memory: 512 << 20,
             store: None,
             largest_output: 1 << 30,
+            durable: true,
             filtering: true,
         }
     }

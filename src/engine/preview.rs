@@ -125,7 +125,8 @@ impl Output<'_> {
             channel: channel.to_owned(),
         };
         let range = maps.ranges.get(channel).copied();
-        let writer = output::create(&*self.engine.world, &self.preview_path(), &request);
+        let (world, cancel) = (&*self.engine.world, &self.engine.cancel);
+        let writer = output::create_until(world, &self.preview_path(), &request, cancel);
         let mut sheets = [Sheet {
             encoder: Encoder::new(kind, request.format, range),
             writer: writer.map_err(not_written)?,

@@ -96,6 +96,7 @@ impl Engine {
 
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
+        self.world.sweep(&request.folder);
         let plan = self.plan(request.graph, &wanted)?;
         let protected = files::Protected::new(&*self.world, &plan, self.options.store.as_deref());
         let outputs = self.outputs(request, &plan, &protected, &wanted);
@@ -360,9 +361,14 @@ impl Output<'_> {
         };
         let range = maps.ranges.get(&map.channel).copied();
         let (world, cancel) = (&*self.engine.world, &self.engine.cancel);
+        let create = if self.engine.options.durable {
+            output::create_durable
+        } else {
+            output::create_until
+        };
         Ok(Sheet {
             encoder: Encoder::new(kind, maps.format, range),
-            writer: output::create_until(world, &self.path(map), &request, cancel)?,
+            writer: create(world, &self.path(map), &request, cancel)?,
             faults: Faults::default(),
         })
     }

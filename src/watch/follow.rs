@@ -20,7 +20,7 @@ const POLL: Duration = Duration::from_millis(250);
 const BREATH: Duration = Duration::from_millis(30);
 
 /// How long a run may take to end when the watch does.
-const FAREWELL: Duration = Duration::from_millis(400);
+const FAREWELL: Duration = Duration::from_millis(300);
 
 /// How long nothing new may be seen while changes come faster than pictures.
 const UNSEEN: Duration = Duration::from_millis(500);

@@ -87,7 +87,7 @@ impl Watch {
         Stop(Arc::clone(&self.mailbox))
     }
 
-    /// Renders all recipes, then follows them until it is stopped. A run that is going on then has 400 ms to
+    /// Renders all recipes, then follows them until it is stopped. A run that is going on then has 300 ms to
     /// end; whatever it does later is dropped.
     pub fn run(self) {
         follow::Follow::new(self).run();

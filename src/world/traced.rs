@@ -216,6 +216,14 @@ impl World for Traced {
         self.world.create(path)
     }
 
+    fn create_aside(&self, path: &Path, aside: &Path) -> io::Result<Box<dyn PendingFile>> {
+        self.world.create_aside(path, aside)
+    }
+
+    fn sweep(&self, folder: &Path) {
+        self.world.sweep(folder);
+    }
+
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
         self.world.list(folder)
     }
