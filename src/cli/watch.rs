@@ -12,6 +12,7 @@ use yosegi::watch::{self, Followed, Rendered, Told, Watch};
 use yosegi::world::Disk;
 
 #[derive(clap::Args)]
+#[group(skip)]
 pub(super) struct Arguments {
     #[command(flatten)]
     render: render::Arguments,

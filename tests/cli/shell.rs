@@ -7,6 +7,7 @@ const COMMANDS: [&str; 8] = [
     "check",
     "why",
     "sample",
+    "watch",
     "nodes",
     "cache",
     "completions",
