@@ -2,7 +2,7 @@
 
 use super::*;
 
-const COMMANDS: [&str; 8] = [
+const COMMANDS: [&str; 9] = [
     "render",
     "check",
     "why",
