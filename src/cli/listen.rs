@@ -3,6 +3,7 @@
 use super::report;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use yosegi::engine::{Event, Listener};
 
 /// Steps of the bar.
@@ -12,6 +13,8 @@ const STEPS: u64 = 1000;
 pub(super) struct Listen {
     json: bool,
     bar: ProgressBar,
+    /// Maps that were as they should be, and maps that were put in place.
+    maps: [AtomicUsize; 2],
 }
 
 impl Listen {
@@ -26,12 +29,31 @@ impl Listen {
         let bar = ProgressBar::with_draw_target(Some(STEPS), target);
         let style = ProgressStyle::with_template("{prefix:16!} {bar:30} {percent:>3} %  {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Listen { json, bar }
+        Listen {
+            json,
+            bar,
+            maps: Default::default(),
+        }
     }
 
     /// Takes the bar away.
     pub(super) fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+
+    /// Whether there were maps, and all of them were there already.
+    pub(super) fn was_up_to_date(&self) -> bool {
+        let [there, put] = [0, 1].map(|index| self.maps[index].load(Ordering::Relaxed));
+        there > 0 && put == 0
+    }
+
+    fn count(&self, event: &Event) {
+        let index = match event {
+            Event::MapUpToDate { .. } => 0,
+            Event::MapWritten { .. } | Event::MapRestored { .. } => 1,
+            _ => return,
+        };
+        self.maps[index].fetch_add(1, Ordering::Relaxed);
     }
 
     fn warn(&self, text: &str) {
@@ -122,6 +144,7 @@ fn faults(event: &Event) -> Option<Faults<'_>> {
 
 impl Listener for Listen {
     fn hear(&self, event: Event) {
+        self.count(&event);
         if !self.json {
             self.tell(&event);
         } else if let Ok(text) = serde_json::to_string(&event) {

@@ -81,6 +81,9 @@ fn render(arguments: &Arguments, engine: &Engine, recipe: &Path, cancel: &Cancel
     match result {
         Ok(maps) => {
             announce(&maps, json);
+            if listener.was_up_to_date() && !json {
+                report::note(&format!("{} is up to date", recipe.display()));
+            }
             Exit::Done
         }
         Err(error) => report::run_error(&error, json),

@@ -8,7 +8,6 @@ mod check;
 mod content;
 mod event;
 mod files;
-mod keeping;
 mod known;
 mod look_up;
 mod memory;
@@ -26,10 +25,10 @@ mod why;
 
 pub use cancel::Cancel;
 pub use event::{Event, From as ReusedFrom, Listener};
-pub use keeping::{StoreFamily, clean_store, store_status};
 pub use pace::Pace;
 pub use render::{Render, RenderedMap};
 pub use sample::SampledField;
+pub use store::{StoreFamily, clean_store, store_status};
 pub use target::FlatPiece;
 pub use why::{Cause, Explained, Fate, Why};
 
@@ -66,6 +65,9 @@ pub struct Options {
     pub memory: usize,
     /// The folder of the store; `None` keeps nothing on disk.
     pub store: Option<PathBuf>,
+    /// Bytes that the store may take on disk, in whole blocks of 4096: more than that, and entries go that
+    /// were used longest ago. What a run uses stays until it ends. 0 keeps nothing.
+    pub store_limit: u64,
     /// Most pixels that one output may have.
     pub largest_output: u64,
     /// Whether fields are filtered. Off only to show what filtering is good for: this one changes results.
@@ -80,6 +82,7 @@ impl Default for Options {
             level: None,
             memory: 512 << 20,
             store: None,
+            store_limit: 2 << 30,
             largest_output: 1 << 30,
             filtering: true,
         }
@@ -144,7 +147,7 @@ impl Engine {
         let store = options
             .store
             .clone()
-            .map(|folder| Store::new(Arc::clone(&world), folder));
+            .map(|folder| Store::new(Arc::clone(&world), folder, options.store_limit));
         Ok(Engine {
             memory: Memory::new(options.memory),
             world,

@@ -6,6 +6,7 @@ use super::known::{KnownMap, KnownOutput, OutputRecord, repeat_warnings};
 use super::paint::{Painter, Sheet};
 use super::plan::Plan;
 use super::progress::Meter;
+use super::store::{Family, Store, ToldOnce};
 use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::field::{Field, Program, Target};
@@ -35,6 +36,23 @@ pub struct Render<'a> {
     pub cancel: Cancel,
 }
 
+impl<'a> Render<'a> {
+    /// The same request with another listener.
+    pub(super) fn heard_by<'b>(&'b self, listener: &'b dyn Listener) -> Render<'b>
+    where
+        'a: 'b,
+    {
+        Render {
+            graph: self.graph,
+            folder: self.folder.clone(),
+            only: self.only.clone(),
+            pixels: self.pixels,
+            listener,
+            cancel: self.cancel.clone(),
+        }
+    }
+}
+
 /// A map that is now in its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RenderedMap {
@@ -61,6 +79,9 @@ impl Engine {
     /// What is wrong with nodes or files, which limit was reached, or that the run was cancelled. Maps
     /// that were finished before stay in place; of others nothing is left.
     pub fn render(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
+        let _in_use = self.store.as_ref().map(Store::begin);
+        let listener = ToldOnce::new(request.listener);
+        let request = &request.heard_by(&listener);
         self.threads.install(|| {
             let result = self.render_outputs(request);
             if matches!(result, Err(RunError::Cancelled)) {
@@ -363,7 +384,7 @@ impl Output<'_> {
                 store.put_map(&map.key, &self.path(map), faults)
             })
             .and_then(|()| postcard::to_stdvec(&record).map_err(io::Error::other))
-            .and_then(|bytes| store.put("plan", &self.plan_key(), &bytes));
+            .and_then(|bytes| store.put(Family::Plan, &self.plan_key(), &bytes));
         if let Err(error) = stored {
             self.request.listener.hear(Event::StoreFailed {
                 reason: error.to_string(),

@@ -4,6 +4,7 @@ use super::build::Builder;
 use super::content;
 use super::event::{Event, From};
 use super::memory::Structure;
+use super::store::Family;
 use crate::graph::{Node, Source};
 use crate::key::{Key, KeyHasher};
 use crate::node::Failure;
@@ -57,7 +58,9 @@ impl Builder<'_> {
             return Ok(structure);
         }
         let start = Instant::now();
-        let stored = self.store.and_then(|store| store.get("structure", &key));
+        let stored = self
+            .store
+            .and_then(|store| store.get(Family::Structure, &key));
         if let Some(bytes) = stored
             && let Some(structure) = content::decode(node.kind, &bytes)
         {
@@ -73,7 +76,10 @@ impl Builder<'_> {
         let bytes = content::encode(&structure.values, &structure.warnings);
         self.memory
             .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
-        if let Some(Err(error)) = self.store.map(|store| store.put("structure", &key, &bytes)) {
+        if let Some(Err(error)) = self
+            .store
+            .map(|store| store.put(Family::Structure, &key, &bytes))
+        {
             self.listener.hear(Event::StoreFailed {
                 reason: error.to_string(),
             });

@@ -41,6 +41,13 @@ fn a_second_render_says_that_all_is_up_to_date() {
         ["board/base_color", "board/normal", "plain/roughness"]
     );
     assert_eq!(lines(&second).len(), 3);
+    let told = place.render(&[]);
+    assert_eq!(stderr(&told), "recipe.ron is up to date\n");
+    assert_eq!(stdout(&told).lines().count(), 3);
+    // One map of three has to be put back.
+    fs::remove_file(place.path("out/board_normal.png")).unwrap();
+    let told = place.render(&[]);
+    assert_eq!((code(&told), stderr(&told)), (0, String::new()));
 }
 
 #[test]
