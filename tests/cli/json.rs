@@ -220,7 +220,7 @@ fn stale_files_are_told_as_events_and_as_warnings() {
     let output = place.render(&[]);
     let path = Path::new("out").join("board_normal.png");
     let expected = format!(
-        "warning: {} is from an earlier run: `board` no longer writes it\n",
+        "warning: {} is from an earlier run: `board` no longer writes it\nrecipe.ron is up to date\n",
         path.display()
     );
     assert_eq!((code(&output), stderr(&output)), (0, expected));

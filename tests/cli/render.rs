@@ -151,7 +151,9 @@ fn programs_at_the_same_time_share_a_store_and_a_folder() {
     let children: Vec<_> = (0..4).map(|_| start(&place, &call)).collect();
     for child in children {
         let output = child.wait_with_output().unwrap();
-        assert_eq!((code(&output), stderr(&output)), (0, String::new()));
+        // The last ones may have found nothing to do.
+        let told = stderr(&output).replace("recipe.ron is up to date\n", "");
+        assert_eq!((code(&output), told), (0, String::new()));
     }
     assert!(place.files("out") == place.files("right"));
     assert_eq!(
@@ -194,7 +196,8 @@ fn a_map_that_is_there_already_is_warned_of_again() {
         first.contains("12 samples") && first.contains("were clamped"),
         "{first}"
     );
-    assert_eq!(stderr(&place.render(&[])), first);
+    let second = format!("{first}recipe.ron is up to date\n");
+    assert_eq!(stderr(&place.render(&[])), second);
     fs::remove_file(place.folder.path().join("out/board_height.png")).unwrap();
     assert_eq!(stderr(&place.render(&[])), first);
 }
