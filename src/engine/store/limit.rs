@@ -63,12 +63,18 @@ impl Limit {
         on_disk(size) <= self.most
     }
 
-    /// Keeps an entry as long as the runs last that go on now.
-    pub(super) fn mark(&self, path: &Path) {
+    /// Keeps an entry as long as the runs last that go on now; false if there are none.
+    pub(super) fn mark(&self, path: &Path) -> bool {
         let mut used = lock(&self.used);
         if used.runs > 0 && !used.paths.contains(path) {
             used.paths.insert(path.to_owned());
         }
+        used.runs > 0
+    }
+
+    /// Whether runs go on now; otherwise the store is only looked at.
+    pub(super) fn is_in_use(&self) -> bool {
+        lock(&self.used).runs > 0
     }
 
     fn is_used(&self, path: &Path) -> bool {

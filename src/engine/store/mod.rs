@@ -57,8 +57,7 @@ impl Store {
             }
             Found::Nothing => None,
             Found::Damaged => {
-                // What cannot be removed is a miss all the same.
-                let _ = self.world.remove(&path);
+                self.discard(&path);
                 None
             }
         }
@@ -85,16 +84,24 @@ impl Store {
     /// Removes an entry of which the contents are wrong.
     pub(super) fn forget(&self, family: Family, key: &Key) {
         if let Ok(path) = self.place(family, key) {
-            // What cannot be removed is found to be wrong again.
-            let _ = self.world.remove(&path);
+            self.discard(&path);
+        }
+    }
+
+    /// Removes a damaged entry, in a run.
+    fn discard(&self, path: &Path) {
+        if self.limit.is_in_use() {
+            // What cannot be removed is found to be damaged again.
+            let _ = self.world.remove(path);
         }
     }
 
     /// Keeps an entry from being evicted, in this run by name and in others by its time.
     fn mark_used(&self, path: &Path) {
-        self.limit.mark(path);
-        // Only the order of eviction depends on it.
-        let _ = self.world.touch(path, TOUCHED_AFTER);
+        if self.limit.mark(path) {
+            // Only the order of eviction depends on it.
+            let _ = self.world.touch(path, TOUCHED_AFTER);
+        }
     }
 
     /// Where an entry is.
