@@ -17,7 +17,7 @@ impl Engine {
     pub fn check(&self, request: &Render<'_>) -> Result<(), RunError> {
         let _in_use = self.store.as_ref().map(Store::begin);
         let listener = ToldOnce::new(request.listener);
-        let request = &request.heard_by(&listener);
+        let request = &listener.request(request);
         self.threads.install(|| self.check_all(request))
     }
 

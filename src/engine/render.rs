@@ -36,23 +36,6 @@ pub struct Render<'a> {
     pub cancel: Cancel,
 }
 
-impl<'a> Render<'a> {
-    /// The same request with another listener.
-    pub(super) fn heard_by<'b>(&'b self, listener: &'b dyn Listener) -> Render<'b>
-    where
-        'a: 'b,
-    {
-        Render {
-            graph: self.graph,
-            folder: self.folder.clone(),
-            only: self.only.clone(),
-            pixels: self.pixels,
-            listener,
-            cancel: self.cancel.clone(),
-        }
-    }
-}
-
 /// A map that is now in its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RenderedMap {
@@ -81,7 +64,7 @@ impl Engine {
     pub fn render(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let _in_use = self.store.as_ref().map(Store::begin);
         let listener = ToldOnce::new(request.listener);
-        let request = &request.heard_by(&listener);
+        let request = &listener.request(request);
         self.threads.install(|| {
             let result = self.render_outputs(request);
             if matches!(result, Err(RunError::Cancelled)) {

@@ -1,6 +1,7 @@
 //! One warning of the store in a run, however often it fails.
 
 use crate::engine::event::{Event, Listener};
+use crate::engine::render::Render;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Hears a run, and lets only its first [`Event::StoreFailed`] pass.
@@ -14,6 +15,18 @@ impl<'a> ToldOnce<'a> {
         ToldOnce {
             listener,
             is_told: AtomicBool::new(false),
+        }
+    }
+
+    /// The request, heard by this.
+    pub(in crate::engine) fn request<'b>(&'b self, request: &'b Render<'_>) -> Render<'b> {
+        Render {
+            graph: request.graph,
+            folder: request.folder.clone(),
+            only: request.only.clone(),
+            pixels: request.pixels,
+            listener: self,
+            cancel: request.cancel.clone(),
         }
     }
 }
