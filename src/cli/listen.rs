@@ -91,6 +91,11 @@ impl Listen {
             Event::Warning { node, message } => {
                 self.warn(&format!("node `{node}`: {message}"));
             }
+            Event::CacheVerified { compared } => self.bar.suspend(|| {
+                report::note(&format!(
+                    "{compared} results were computed again and compared"
+                ));
+            }),
             Event::StoreFailed { reason } => self.warn(&format!(
                 "the store of earlier results cannot be used: {reason}"
             )),

@@ -24,7 +24,7 @@ pub(super) struct KnownMap {
 }
 
 /// What the store remembers of an output.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct OutputRecord {
     pub(super) maps: Vec<WantedMap>,
     /// The plan keys of nodes with what they warned of.
@@ -97,6 +97,9 @@ impl Output<'_> {
 
     /// The maps, if the store knows them all and they are in place or can be put there; changes nothing.
     pub(super) fn known(&self) -> Option<KnownOutput> {
+        if self.verification.is_some() {
+            return None;
+        }
         let OutputRecord { maps, warnings } = self.engine.planned(self.name(), &self.plan_key())?;
         let world = &*self.engine.world;
         if !maps

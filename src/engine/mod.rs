@@ -20,6 +20,7 @@ mod reuse;
 mod sample;
 mod store;
 mod target;
+mod verify;
 mod wanted;
 mod why;
 
@@ -45,6 +46,7 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 use store::Store;
+use verify::Verification;
 
 /// Raised whenever pixels or files change for a reason outside a kind: filtering, arithmetic, encoding.
 const RESULTS: u32 = 3;
@@ -68,6 +70,9 @@ pub struct Options {
     /// Bytes that the store may take on disk, in whole blocks of 4096: more than that, and entries go that
     /// were used longest ago. What a run uses stays until it ends. 0 keeps nothing.
     pub store_limit: u64,
+    /// Whether everything that the caches would give is made again and compared. Differences are errors with
+    /// the code [`Code::CacheMismatch`], and are replaced.
+    pub verify: bool,
     /// Most pixels that one output may have.
     pub largest_output: u64,
     /// Whether fields are filtered. Off only to show what filtering is good for: this one changes results.
@@ -83,6 +88,7 @@ impl Default for Options {
             memory: 512 << 20,
             store: None,
             store_limit: 2 << 30,
+            verify: false,
             largest_output: 1 << 30,
             filtering: true,
         }
@@ -174,6 +180,7 @@ impl Engine {
             listener,
             budget: std::sync::Arc::default(),
             cancel,
+            verification: self.options.verify.then(Verification::default),
         };
         builder.build(plan)
     }

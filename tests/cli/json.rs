@@ -120,6 +120,10 @@ fn all_events() -> Vec<(Event, Value)> {
             },
             json!({ "event": "store_failed", "reason": "full" }),
         ),
+        (
+            Event::CacheVerified { compared: 3 },
+            json!({ "event": "cache_verified", "compared": 3 }),
+        ),
         (Event::Cancelled, json!({ "event": "cancelled" })),
     ]
 }
@@ -137,6 +141,7 @@ fn is_listed(event: &Event) -> bool {
         | Event::OutputDone { .. }
         | Event::Warning { .. }
         | Event::StoreFailed { .. }
+        | Event::CacheVerified { .. }
         | Event::Cancelled => true,
     }
 }

@@ -1,0 +1,3 @@
+//! Folders and disks that the store cannot rely on.
+
+use super::*;
