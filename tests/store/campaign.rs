@@ -35,10 +35,14 @@ fn recipes() -> [String; 4] {
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014).
-struct Random(u64);
+pub(super) struct Random(u64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
+    pub(super) fn new(seed: u64) -> Random {
+        Random(seed)
+    }
+
+    pub(super) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -47,7 +51,7 @@ impl Random {
     }
 
     /// A number below `limit`.
-    fn below(&mut self, limit: usize) -> usize {
+    pub(super) fn below(&mut self, limit: usize) -> usize {
         (self.next() % limit as u64) as usize
     }
 }
@@ -198,7 +202,7 @@ impl Campaign {
 
 fn run(most: usize, seed: u64) {
     let campaign = Campaign::new();
-    let (mut random, start) = (Random(seed), Instant::now());
+    let (mut random, start) = (Random::new(seed), Instant::now());
     let (mut damaged, mut iterations, mut wrong) = (0, 0, 0);
     let mut ways = [0; WAYS.len()];
     while damaged < most {

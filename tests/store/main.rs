@@ -3,9 +3,11 @@
 
 mod campaign;
 mod damage;
+mod keys;
 mod limit;
 mod malice;
 mod places;
+mod sharing;
 mod verify;
 
 #[path = "../support/workshop.rs"]

@@ -116,7 +116,10 @@ impl Store {
             sum.saturating_add(on_disk(entry.bytes))
         });
         let mut result = Ok(());
-        if total > limit.most {
+        // The estimate counts entries that were replaced twice. Stopping just below the limit would mean to
+        // count again soon.
+        let most = size.total.map_or(limit.most, |_| limit.target());
+        if total > most {
             let now = SystemTime::now();
             entries.sort_by_cached_key(|entry| (last_use(entry, now), entry.path.clone()));
             for entry in entries {
