@@ -225,7 +225,7 @@ fn run(most: usize, seed: u64) {
     assert!(most < 300 || ways.iter().all(|count| *count > 0));
 }
 
-fn variable(name: &str, default: u64) -> u64 {
+pub(super) fn variable(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |text| text.parse().unwrap())
 }
 

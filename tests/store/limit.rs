@@ -3,9 +3,9 @@
 use super::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 use yosegi::engine::store_status;
-use yosegi::world::{Listed, Memory, PendingFile};
+use yosegi::world::{Disk, Listed, Memory, PendingFile};
 
 const BLOCK: u64 = 4096;
 const DAY: Duration = Duration::from_secs(24 * 3600);
@@ -316,4 +316,63 @@ fn the_age_of_the_oldest_entry_is_told() {
         "{ages:?}"
     );
     assert_eq!(ages[3], Some(0));
+}
+
+/// Renders so many different boards into one store on disk, as one long session does; gives the most that the
+/// store took, in whole blocks.
+fn session(runs: usize, limit: u64) -> u64 {
+    let folder = tempfile::tempdir().unwrap();
+    let options = Options {
+        store: Some(folder.path().join("store")),
+        ..limited(limit)
+    };
+    let mut session = workshop(options.clone()).another_on(Arc::new(Disk), options.clone());
+    session.folder = folder.path().to_owned();
+    let (mut most, mut seconds) = (0, vec![]);
+    for number in 0..runs {
+        let start = Instant::now();
+        let log = session.run(&variant(number));
+        seconds.push(start.elapsed().as_secs_f64());
+        assert!(
+            log.contains("written") && !log.contains("store failed"),
+            "{log}"
+        );
+        if number % (runs / 50) == 0 || number + 1 == runs {
+            most = most.max(taken_on_disk(&folder.path().join("store")));
+        }
+    }
+    let tenth = runs / 10;
+    let mean = |part: &[f64]| 1e3 * part.iter().sum::<f64>() / part.len() as f64;
+    println!(
+        "{runs} runs, limit {limit} bytes, at most {most} taken; {:.2} ms a run in the first tenth, {:.2} ms in the \
+         last, {:.1} s in all",
+        mean(&seconds[..tenth]),
+        mean(&seconds[runs - tenth..]),
+        seconds.iter().sum::<f64>()
+    );
+    most
+}
+
+fn taken_on_disk(folder: &Path) -> u64 {
+    let entries = Disk.list(folder).unwrap().into_iter();
+    let sizes = entries.map(|entry| match entry.bytes {
+        Some(bytes) => bytes.div_ceil(BLOCK) * BLOCK,
+        None => taken_on_disk(&entry.path),
+    });
+    sizes.sum()
+}
+
+#[test]
+fn a_session_stays_within_its_limit() {
+    let most = session(100, 1 << 20);
+    assert!(most <= 1 << 20, "{most}");
+    assert!(most > 3 << 18, "{most}");
+}
+
+#[test]
+#[ignore = "takes a minute"]
+fn campaign_of_a_long_session() {
+    let runs = usize::try_from(campaign::variable("YOSEGI_RUNS", 20_000)).unwrap();
+    let most = session(runs, 64 << 20);
+    assert!(most <= 64 << 20, "{most}");
 }
