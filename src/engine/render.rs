@@ -6,9 +6,11 @@ use super::known::{KnownMap, KnownOutput, OutputRecord, repeat_warnings};
 use super::paint::{Painter, Sheet};
 use super::plan::Plan;
 use super::progress::Meter;
+use super::store::{Family, Store, ToldOnce};
+use super::verify::Verification;
 use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
-use crate::field::{Field, Program, Target};
+use crate::field::{ColumnCache, Field, Program, RunContext, Target};
 use crate::graph::{Graph, no_output};
 use crate::key::Key;
 use crate::output::{self, Encoder, Faults, MapRequest};
@@ -49,7 +51,7 @@ pub struct RenderedMap {
 }
 
 /// A map that an output asks for.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct WantedMap {
     pub(super) channel: String,
     pub(super) file_name: String,
@@ -76,6 +78,9 @@ impl Engine {
         request: &Render<'_>,
         inputs: &Arc<dyn World>,
     ) -> Result<Vec<RenderedMap>, RunError> {
+        let _in_use = self.store.as_ref().map(Store::begin);
+        let listener = ToldOnce::new(request.listener);
+        let request = &listener.request(request);
         let run = self.until(&request.cancel, inputs);
         self.threads
             .install(|| run.ended(run.render_outputs(request), request.listener))
@@ -131,7 +136,7 @@ impl Engine {
         }
         self.tell_stale(request, &outputs, &rendered, &names);
         let rendered = rendered.concat();
-        built.complete()?;
+        self.judge(&built, &outputs, request.listener)?;
         self.remember_run(request, &plan);
         Ok(rendered)
     }
@@ -175,6 +180,7 @@ impl Engine {
             plan,
             protected,
             index: *index,
+            verification: self.options.verify.then(Verification::default),
         };
         wanted.iter().map(output).collect()
     }
@@ -211,6 +217,8 @@ pub(super) struct Output<'a> {
     pub(super) plan: &'a Plan<'a>,
     pub(super) protected: &'a files::Protected,
     pub(super) index: NodeIndex,
+    /// Compares what is painted with what the store has, if that is asked for.
+    pub(super) verification: Option<Verification>,
 }
 
 impl Output<'_> {
@@ -301,7 +309,10 @@ impl Output<'_> {
 
     /// Whether the map is in place or can be put there; says so.
     fn found(&self, map: &WantedMap) -> bool {
-        let known = self.known_map(map);
+        let known = match self.verification {
+            Some(_) => None,
+            None => self.known_map(map),
+        };
         known.is_some_and(|known| self.put_in_place(&known))
     }
 
@@ -322,12 +333,17 @@ impl Output<'_> {
             .map(|map| self.sheet(maps, target, map))
             .collect();
         let mut sheets = sheets.map_err(|error| RunError::not_written(&error))?;
+        let (context, columns) = (self.engine.context(), self.verified_columns());
+        let columns = columns.as_ref().map(|it| it as &dyn ColumnCache);
         let painter = Painter {
             output: self.name(),
             program: &program,
             target,
             options: &self.engine.options,
-            context: self.engine.context(),
+            context: RunContext {
+                cache: columns.or(context.cache),
+                ..context
+            },
             listener: self.request.listener,
             cancel,
             meter,
@@ -379,7 +395,7 @@ impl Output<'_> {
         &self,
         wanted: &[WantedMap],
         built: &Built,
-        mut written: impl Iterator<Item = (&'m WantedMap, Faults)>,
+        mut written: impl Iterator<Item = (&'m WantedMap, Faults)> + Clone,
     ) {
         let Some(store) = &self.engine.store else {
             return;
@@ -388,13 +404,14 @@ impl Output<'_> {
             maps: wanted.to_vec(),
             warnings: self.warnings(built),
         };
+        self.verify(&record, written.clone());
         let stored = written
             .try_for_each(|(map, faults)| {
                 let faults = [faults.non_finite, faults.clamped];
                 store.put_map(&map.key, &self.path(map), faults)
             })
             .and_then(|()| postcard::to_stdvec(&record).map_err(io::Error::other))
-            .and_then(|bytes| store.put("plan", &self.plan_key(), &bytes));
+            .and_then(|bytes| store.put(Family::Plan, &self.plan_key(), &bytes));
         if let Err(error) = stored {
             tell_store_failed(self.request.listener, &self.engine.cancel, &error);
         }

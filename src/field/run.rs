@@ -25,8 +25,8 @@ pub trait ColumnCache: Send + Sync {
     /// The columns stored under `key`.
     fn get(&self, key: &Key) -> Option<Columns>;
 
-    /// Stores columns that took about `nanoseconds` to compute.
-    fn put(&self, key: Key, columns: Columns, nanoseconds: f64);
+    /// Stores columns of `node` that took about `nanoseconds` to compute.
+    fn put(&self, node: &str, key: Key, columns: Columns, nanoseconds: f64);
 }
 
 /// What a run needs besides the program and the samples.
@@ -325,6 +325,7 @@ fn store(scratch: &Scratch, step: &KernelStep, key: Key, context: &RunContext<'_
         .collect();
     if let Some(cache) = context.cache {
         cache.put(
+            &step.node,
             key,
             columns,
             f64::from(step.kernel.nanoseconds()) * padded as f64,
