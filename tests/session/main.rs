@@ -68,7 +68,7 @@ impl Files {
     \"stained\": stain(of: \"{name}\"),
     \"wood\": {kind}(base_color: \"stained\"){closed},
     \"plank\": slice_cut(of: \"wood\", cut: quarter_sawn, origin: (0, 0, 600), size: (120, 100)),
-}}, outputs: {{ \"board\": maps(of: \"plank\", pixels: (64, 64), channels: [base_color]) }})"
+}}, outputs: {{ \"board\": maps(of: \"plank\", pixels: (256, 256), channels: [base_color]) }})"
         );
         let compound = format!(
             "(about: \"{about}\", source: \"own construction\",

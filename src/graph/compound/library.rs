@@ -248,6 +248,7 @@ fn read(
     match found {
         Ok(source) => {
             let mut own = Report::new(&source);
+            own.cancel = report.cancel.clone();
             file.tree = text::read(&mut own);
             if file.tree.is_none() && !own.has_errors() {
                 let message = "the file holds no compound";
