@@ -26,7 +26,10 @@ impl Key {
         let mut buffer = vec![0; 1 << 16];
         let mut length = 0;
         loop {
-            let read = stream.read(&mut buffer)?;
+            let read = match stream.read(&mut buffer) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                read => read?,
+            };
             if read == 0 {
                 return Ok((Key(*hasher.finalize().as_bytes()), length));
             }

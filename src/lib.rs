@@ -22,4 +22,5 @@ pub mod node;
 pub mod nodes;
 pub mod output;
 pub mod value;
+pub mod watch;
 pub mod world;

@@ -2,7 +2,8 @@
 
 use super::report;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use yosegi::engine::{Event, Listener};
 
 /// Steps of the bar.
@@ -12,6 +13,7 @@ const STEPS: u64 = 1000;
 pub(super) struct Listen {
     json: bool,
     bar: ProgressBar,
+    placed: Mutex<Vec<PathBuf>>,
 }
 
 impl Listen {
@@ -26,12 +28,22 @@ impl Listen {
         let bar = ProgressBar::with_draw_target(Some(STEPS), target);
         let style = ProgressStyle::with_template("{prefix:16!} {bar:30} {percent:>3} %  {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Listen { json, bar }
+        Listen {
+            json,
+            bar,
+            placed: Mutex::default(),
+        }
     }
 
     /// Takes the bar away.
     pub(super) fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+
+    /// The files of the maps that are in place, for a run that fails after some of them.
+    pub(super) fn placed(&self) -> Vec<PathBuf> {
+        let placed = self.placed.lock();
+        placed.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     fn warn(&self, text: &str) {
@@ -72,9 +84,12 @@ impl Listen {
             Event::StoreFailed { reason } => self.warn(&format!(
                 "the store of earlier results cannot be used: {reason}"
             )),
-            _ => faults(event)
-                .iter()
-                .for_each(|faults| self.warn_of_faults(faults)),
+            _ => faults(event).iter().for_each(|faults| {
+                let placed = self.placed.lock();
+                let mut placed = placed.unwrap_or_else(PoisonError::into_inner);
+                placed.push(faults.path.to_owned());
+                self.warn_of_faults(faults);
+            }),
         }
     }
 }

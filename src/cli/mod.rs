@@ -1,5 +1,6 @@
 //! The command line: arguments, subcommands and exit codes.
 
+mod bytes;
 mod cache;
 mod check;
 mod completions;
@@ -11,6 +12,8 @@ mod options;
 mod render;
 mod report;
 mod sample;
+mod signals;
+mod watch;
 mod why;
 
 use clap::{Args, Parser, Subcommand};
@@ -26,12 +29,14 @@ struct Arguments {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 a node failed, 2 the recipe or the call is wrong, \
-    3 a file could not be read or written, 4 a limit was reached, 130 interrupted";
+    3 a file could not be read or written, 4 a limit was reached, 129 the terminal has gone, 130 interrupted, 143 terminated";
 
 #[derive(Subcommand)]
 enum Command {
     /// Render the outputs of recipes into image files.
     Render(render::Arguments),
+    /// Render recipes, and again whenever a file that they read has changed.
+    Watch(watch::Arguments),
     /// Report everything that is wrong with recipes: builds their nodes, but evaluates and writes nothing.
     Check(check::Arguments),
     /// Explain what a render would do with a node or an output, and why.
@@ -56,7 +61,9 @@ enum Exit {
     Wrong = 2,
     Files = 3,
     Limit = 4,
+    HungUp = 129,
     Interrupted = 130,
+    Terminated = 143,
 }
 
 /// Changes to a recipe's parameters.
@@ -109,6 +116,7 @@ struct Recipes {
 pub(crate) fn main() -> ExitCode {
     let exit = match Arguments::parse().command {
         Command::Render(arguments) => render::run(&arguments),
+        Command::Watch(arguments) => watch::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Why(arguments) => why::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),

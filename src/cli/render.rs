@@ -2,24 +2,24 @@
 
 use super::listen::Listen;
 use super::options::{self, EngineArguments, SizeArguments, StoreArguments};
-use super::{Exit, RecipeArguments, Recipes, report};
+use super::{Exit, RecipeArguments, Recipes, report, signals};
 use std::path::{Path, PathBuf};
-use yosegi::engine::{Cancel, Engine, Options, Render, RenderedMap};
+use yosegi::engine::{Cancel, Engine, Options, Render};
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    recipes: Recipes,
+    pub(super) recipes: Recipes,
     /// Folder for the maps; with several recipes each gets a folder in it.
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     output: PathBuf,
     #[command(flatten)]
-    size: SizeArguments,
+    pub(super) size: SizeArguments,
     /// Only this output; may be given several times.
     #[arg(long, value_name = "OUTPUT")]
-    only: Vec<String>,
+    pub(super) only: Vec<String>,
     #[command(flatten)]
-    recipe: RecipeArguments,
+    pub(super) recipe: RecipeArguments,
     #[command(flatten)]
     engine: EngineArguments,
     #[command(flatten)]
@@ -32,15 +32,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Exit {
     let cancel = Cancel::new();
     let switch = cancel.clone();
-    if let Err(error) = ctrlc::set_handler(move || {
-        if switch.is_cancelled() {
-            // Asked twice: do not wait for the next tile.
-            std::process::exit(Exit::Interrupted as i32);
-        }
-        switch.cancel();
-    }) {
-        report::problem(&format!("interrupts will end the program at once: {error}"));
-    }
+    let signals = signals::listen(move || switch.cancel());
     let options = match engine_options(arguments) {
         Ok(options) => options,
         Err(problem) => {
@@ -55,8 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     let mut worst = Exit::Done;
     for recipe in &arguments.recipes.recipes {
         worst = worst.max(render(arguments, &engine, recipe, &cancel));
-        if cancel.is_cancelled() {
-            return Exit::Interrupted;
+        if let Some(exit) = signals.exit() {
+            return exit;
         }
     }
     worst
@@ -80,29 +72,37 @@ fn render(arguments: &Arguments, engine: &Engine, recipe: &Path, cancel: &Cancel
     listener.finish();
     match result {
         Ok(maps) => {
-            announce(&maps, json);
+            announce(maps.into_iter().map(|map| map.path), json);
             Exit::Done
         }
-        Err(error) => report::run_error(&error, json),
+        Err(error) => {
+            announce(listener.placed(), json);
+            report::run_error(&error, json)
+        }
     }
 }
 
-fn announce(maps: &[RenderedMap], json: bool) {
+/// Names the maps that are in place.
+fn announce(maps: impl IntoIterator<Item = PathBuf>, json: bool) {
     if !json {
-        maps.iter()
-            .for_each(|map| report::line(&map.path.display().to_string()));
+        maps.into_iter()
+            .for_each(|map| report::line(&map.display().to_string()));
     }
 }
 
 /// The folder for the maps; of several recipes each has one of its own, since outputs may share names.
-fn folder_of(arguments: &Arguments, recipe: &Path) -> PathBuf {
+pub(super) fn folder_of(arguments: &Arguments, recipe: &Path) -> PathBuf {
     match recipe.file_stem() {
         Some(stem) if arguments.recipes.recipes.len() > 1 => arguments.output.join(stem),
         _ => arguments.output.clone(),
     }
 }
 
-fn engine_options(arguments: &Arguments) -> Result<Options, String> {
+/// How an engine works for these arguments.
+///
+/// # Errors
+/// If this machine lacks the vector instructions that are asked for.
+pub(super) fn engine_options(arguments: &Arguments) -> Result<Options, String> {
     Ok(Options {
         threads: arguments.engine.threads.map(usize::from),
         tile: arguments.tile,

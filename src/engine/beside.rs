@@ -10,6 +10,8 @@ pub(super) struct Beside<'w> {
     folders: [PathBuf; 3],
     /// Where the folders that exist really lie; empty if files may be anywhere.
     roots: Vec<PathBuf>,
+    /// Why it is not known of some folder where it lies.
+    trouble: Option<io::Error>,
     allow_outside: bool,
 }
 
@@ -21,11 +23,17 @@ impl<'w> Beside<'w> {
             folder.join("assets"),
             folder.join("../assets"),
         ];
-        let roots = folders
-            .iter()
-            .filter_map(|folder| world.real_path(folder).ok());
+        let (mut roots, mut trouble) = (vec![], None);
+        for folder in &folders {
+            match world.real_path(folder) {
+                Ok(root) => roots.push(root),
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                Err(error) => trouble = Some(error),
+            }
+        }
         Beside {
-            roots: roots.collect(),
+            roots,
+            trouble,
             world,
             folders,
             allow_outside,
@@ -56,7 +64,10 @@ impl<'w> Beside<'w> {
         };
         let is_inside = self.roots.iter().any(|root| real.starts_with(root));
         if !is_inside && !self.allow_outside {
-            return Err(missing());
+            let trouble = self.trouble.as_ref();
+            return Err(trouble.map_or_else(missing, |error| {
+                io::Error::new(error.kind(), error.to_string())
+            }));
         }
         // What was looked at is what is read.
         let bytes = self.world.read(&real)?;

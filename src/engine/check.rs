@@ -14,7 +14,7 @@ impl Engine {
     /// As [`Engine::render`], all at once: failures of nodes, and outputs over the limit or with a file
     /// in common.
     pub fn check(&self, request: &Render<'_>) -> Result<(), RunError> {
-        let run = self.until(&request.cancel);
+        let run = self.until(&request.cancel, &self.world);
         self.threads
             .install(|| run.ended(run.check_all(request), request.listener))
     }

@@ -1,6 +1,6 @@
 //! Keeping house in the store: what lies in it, and removing it.
 
-use super::store::{FAMILIES, LAYOUT_NAME};
+use super::store::{FAMILIES, LAYOUT_NAME, UNFINISHED};
 use crate::world::{Listed, World};
 use serde::Serialize;
 use std::io;
@@ -51,7 +51,10 @@ pub fn clean_store(world: &dyn World, folder: &Path) -> io::Result<Vec<StoreFami
         removed.push(family_of(family, &gone));
         remove_empty(world, &place);
     }
+    let unfinished = folder.join(UNFINISHED);
+    world.sweep(&unfinished);
     // Holds other things, or is in use: then it stays.
+    let _ = world.remove(&unfinished);
     let _ = world.remove(folder);
     result.map(|()| removed)
 }

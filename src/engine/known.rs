@@ -107,7 +107,8 @@ impl Output<'_> {
     /// Copies the map from the store if it is not there, and says so; false if that is not possible.
     pub(super) fn put_in_place(&self, known: &KnownMap) -> bool {
         let store = self.engine.store.as_ref();
-        let restore = |store: &Store| store.restore(&known.record, &known.path);
+        let durable = self.engine.options.durable;
+        let restore = |store: &Store| store.restore(&known.record, &known.path, durable);
         let is_in_place = known.is_there || store.is_some_and(restore);
         if is_in_place {
             self.request.listener.hear(self.event(known));

@@ -14,6 +14,7 @@ mod memory;
 mod pace;
 mod paint;
 mod plan;
+mod preview;
 mod progress;
 mod render;
 mod reuse;
@@ -69,6 +70,9 @@ pub struct Options {
     pub store: Option<PathBuf>,
     /// Most pixels that one output may have.
     pub largest_output: u64,
+    /// Whether maps are on the disk before they replace what is there, so that a loss of power leaves the
+    /// one or the other; costs the time that the disk takes.
+    pub durable: bool,
     /// Whether fields are filtered. Off only to show what filtering is good for: this one changes results.
     pub filtering: bool,
 }
@@ -82,6 +86,7 @@ impl Default for Options {
             memory: 512 << 20,
             store: None,
             largest_output: 1 << 30,
+            durable: true,
             filtering: true,
         }
     }
@@ -91,6 +96,8 @@ impl Default for Options {
 #[derive(Clone)]
 pub struct Engine {
     world: Arc<dyn World>,
+    /// Where the files that a recipe names are read.
+    inputs: Arc<dyn World>,
     options: Options,
     memory: Arc<Memory>,
     store: Option<Store>,
@@ -148,6 +155,7 @@ impl Engine {
         Ok(Engine {
             memory: Arc::new(Memory::new(options.memory)),
             threads: threads(&options)?,
+            inputs: Arc::clone(&world),
             world,
             options,
             store,
@@ -167,13 +175,17 @@ impl Engine {
         })
     }
 
-    /// This engine for one run: whatever it does ends when `cancel` is thrown.
-    fn until(&self, cancel: &Cancel) -> Engine {
-        let world = Stoppable::new(Arc::clone(&self.world), cancel.clone());
-        let world: Arc<dyn World> = Arc::new(world);
+    /// This engine for one run: whatever it does ends when `cancel` is thrown, and what the recipe names is
+    /// read from `inputs`.
+    fn until(&self, cancel: &Cancel, inputs: &Arc<dyn World>) -> Engine {
+        let stoppable = |world: &Arc<dyn World>| -> Arc<dyn World> {
+            Arc::new(Stoppable::new(Arc::clone(world), cancel.clone()))
+        };
+        let world = stoppable(&self.world);
         let store = self.store.as_ref();
         Engine {
             store: store.map(|store| store.through(Arc::clone(&world))),
+            inputs: stoppable(inputs),
             world,
             cancel: cancel.clone(),
             ..self.clone()
@@ -197,7 +209,7 @@ impl Engine {
     }
 
     fn plan<'g>(&self, graph: &'g Graph, wanted: &[NodeIndex]) -> Result<Plan<'g>, RunError> {
-        Plan::new(graph, wanted, &*self.world, &self.cancel)
+        Plan::new(graph, wanted, &*self.inputs, &self.cancel)
     }
 
     fn context(&self) -> RunContext<'_> {

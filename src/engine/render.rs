@@ -13,11 +13,13 @@ use crate::graph::{Graph, no_output};
 use crate::key::Key;
 use crate::output::{self, Encoder, Faults, MapRequest};
 use crate::value::Maps;
+use crate::world::World;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// What to render, and who is told.
 pub struct Render<'a> {
@@ -61,7 +63,20 @@ impl Engine {
     /// What is wrong with nodes or files, which limit was reached, or that the run was cancelled. Maps
     /// that were finished before stay in place; of others nothing is left.
     pub fn render(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
-        let run = self.until(&request.cancel);
+        self.render_reading(request, &self.world)
+    }
+
+    /// As [`Engine::render`], but reads the files that the recipe names from `inputs`, such as a
+    /// [`Traced`](crate::world::Traced) world.
+    ///
+    /// # Errors
+    /// As [`Engine::render`].
+    pub fn render_reading(
+        &self,
+        request: &Render<'_>,
+        inputs: &Arc<dyn World>,
+    ) -> Result<Vec<RenderedMap>, RunError> {
+        let run = self.until(&request.cancel, inputs);
         self.threads
             .install(|| run.ended(run.render_outputs(request), request.listener))
     }
@@ -81,6 +96,7 @@ impl Engine {
 
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
         let wanted = chosen_outputs(request)?;
+        self.world.sweep(&request.folder);
         let plan = self.plan(request.graph, &wanted)?;
         let protected = files::Protected::new(&*self.world, &plan, self.options.store.as_deref());
         let outputs = self.outputs(request, &plan, &protected, &wanted);
@@ -241,7 +257,7 @@ impl Output<'_> {
             return Ok(self.announce(placed.into_iter().map(|known| &known.map)));
         }
         // The store has lost a map since it was asked: the output has to be made after all.
-        let alone = self.engine.plan(self.request.graph, &[self.index])?;
+        let alone = self.plan.part(&[self.index]);
         let built = self.engine.build(&alone, self.request.listener)?;
         built.complete()?;
         let told: Vec<&str> = placed.iter().map(|known| &*known.map.channel).collect();
@@ -274,10 +290,11 @@ impl Output<'_> {
             self.write_maps(maps, &target, &missing, meter)?
         };
         self.remember(&wanted, built, missing.into_iter().zip(faults));
-        let (output, milliseconds) = (self.name().to_owned(), start.elapsed().as_secs_f64() * 1e3);
+        let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
         self.request.listener.hear(Event::OutputDone {
-            output,
-            milliseconds,
+            output: self.name().to_owned(),
+            milliseconds: milliseconds(start.elapsed()),
+            computing: milliseconds(meter.count().computing()),
         });
         Ok(self.announce(&wanted))
     }
@@ -345,9 +362,14 @@ impl Output<'_> {
         };
         let range = maps.ranges.get(&map.channel).copied();
         let (world, cancel) = (&*self.engine.world, &self.engine.cancel);
+        let create = if self.engine.options.durable {
+            output::create_durable
+        } else {
+            output::create_until
+        };
         Ok(Sheet {
             encoder: Encoder::new(kind, maps.format, range),
-            writer: output::create_until(world, &self.path(map), &request, cancel)?,
+            writer: create(world, &self.path(map), &request, cancel)?,
             faults: Faults::default(),
         })
     }

@@ -2,7 +2,7 @@
 //! cancelled nothing is read, written or put in place any more.
 
 use crate::cancel::Cancel;
-use crate::world::{Listed, PendingFile, World};
+use crate::world::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,6 +20,11 @@ impl Stoppable {
     /// `world` until `cancel` is thrown.
     pub(super) fn new(world: Arc<dyn World>, cancel: Cancel) -> Stoppable {
         Stoppable { world, cancel }
+    }
+
+    fn stoppable(&self, file: Box<dyn PendingFile>) -> Box<dyn PendingFile> {
+        let cancel = self.cancel.clone();
+        Box::new(StoppableFile { file, cancel })
     }
 }
 
@@ -50,10 +55,16 @@ impl World for Stoppable {
 
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
         self.cancel.check()?;
-        Ok(Box::new(StoppableFile {
-            file: self.world.create(path)?,
-            cancel: self.cancel.clone(),
-        }))
+        Ok(self.stoppable(self.world.create(path)?))
+    }
+
+    fn create_aside(&self, path: &Path, aside: &Path) -> io::Result<Box<dyn PendingFile>> {
+        self.cancel.check()?;
+        Ok(self.stoppable(self.world.create_aside(path, aside)?))
+    }
+
+    fn sweep(&self, folder: &Path) {
+        self.world.sweep(folder);
     }
 
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
@@ -64,6 +75,14 @@ impl World for Stoppable {
     fn remove(&self, path: &Path) -> io::Result<()> {
         self.cancel.check()?;
         self.world.remove(path)
+    }
+
+    fn stamp(&self, path: &Path) -> io::Result<Stamp> {
+        self.world.stamp(path)
+    }
+
+    fn notices(&self, wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
+        self.world.notices(wake)
     }
 }
 
@@ -104,6 +123,11 @@ impl Seek for StoppableFile {
 }
 
 impl PendingFile for StoppableFile {
+    fn sync(&mut self) -> io::Result<()> {
+        self.cancel.check()?;
+        self.file.sync()
+    }
+
     fn commit(mut self: Box<Self>) -> io::Result<()> {
         // What is slow comes before the lock, under which nothing is left to do but a rename.
         self.flush()?;

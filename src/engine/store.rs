@@ -21,6 +21,9 @@ pub(super) const LAYOUT_NAME: &[u8] = b"yosegi";
 /// The families of entries, each a folder of the store.
 pub(super) const FAMILIES: [&str; 5] = ["structure", "map", "file", "plan", "run"];
 
+/// The folder of the store in which entries lie until they are whole.
+pub(super) const UNFINISHED: &str = "unfinished";
+
 /// Layout, and the hexadecimal digits of a key and of a checksum.
 const HEADER: usize = LAYOUT.len() + 64 + 64;
 
@@ -46,8 +49,10 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// A store in `folder`, which is made when the first entry is written.
+    /// A store in `folder`, which is made when the first entry is written. What runs that were killed have
+    /// left half-written is removed.
     pub(super) fn new(world: Arc<dyn World>, folder: PathBuf) -> Store {
+        world.sweep(&folder.join(UNFINISHED));
         Store { world, folder }
     }
 
@@ -75,7 +80,8 @@ impl Store {
     /// # Errors
     /// Whatever the operating system says; the entry is then not there.
     pub(super) fn put(&self, family: &str, key: &Key, payload: &[u8]) -> io::Result<()> {
-        let mut file = self.world.create(&self.path(family, key))?;
+        let (path, aside) = (self.path(family, key), self.folder.join(UNFINISHED));
+        let mut file = self.world.create_aside(&path, &aside)?;
         file.write_all(&header(key, payload))?;
         file.write_all(payload)?;
         file.commit()
@@ -134,8 +140,9 @@ impl Store {
         start.is_ok_and(|start| start == expected)
     }
 
-    /// Puts a remembered map at `path`; false if its contents are not in the store.
-    pub(super) fn restore(&self, record: &MapRecord, path: &Path) -> bool {
+    /// Puts a remembered map at `path`, as `durable` as a painted one; false if its contents are not in the
+    /// store.
+    pub(super) fn restore(&self, record: &MapRecord, path: &Path, durable: bool) -> bool {
         let contents = self.get("file", &record.file);
         let is_whole = |contents: &Vec<u8>| Key::of_bytes(contents) == record.file;
         let Some(contents) = contents.filter(is_whole) else {
@@ -144,6 +151,9 @@ impl Store {
         let write = || {
             let mut file = self.world.create(path)?;
             file.write_all(&contents)?;
+            if durable {
+                file.sync()?;
+            }
             file.commit()
         };
         write().is_ok()

@@ -19,8 +19,8 @@ pub use encode::{Encoder, Faults, MapKind};
 use crate::cancel::Cancel;
 use crate::key::Key;
 use crate::value::{FileType, MapFormat};
-use crate::world::World;
-use std::io;
+use crate::world::{PendingFile, World};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// The name under which PNG text, EXR attributes and the description of a TIFF carry the key of a map.
@@ -140,9 +140,31 @@ pub(crate) fn create_until(
     request: &MapRequest,
     cancel: &Cancel,
 ) -> io::Result<Box<dyn MapWriter>> {
+    start(path, request, cancel, || world.create(path))
+}
+
+/// As [`create_until`]; the map is on the disk before it replaces what is there, so that a loss of power
+/// leaves the one or the other.
+pub(crate) fn create_durable(
+    world: &dyn World,
+    path: &Path,
+    request: &MapRequest,
+    cancel: &Cancel,
+) -> io::Result<Box<dyn MapWriter>> {
+    start(path, request, cancel, || {
+        Ok(Box::new(Durable(world.create(path)?)))
+    })
+}
+
+fn start(
+    path: &Path,
+    request: &MapRequest,
+    cancel: &Cancel,
+    create: impl FnOnce() -> io::Result<Box<dyn PendingFile>>,
+) -> io::Result<Box<dyn MapWriter>> {
     let start = || -> io::Result<Box<dyn MapWriter>> {
         request.check()?;
-        let file = world.create(path)?;
+        let file = create()?;
         Ok(match request.format.file_type() {
             FileType::Png => Box::new(png::PngWriter::new(file, request, cancel)?),
             FileType::Exr => Box::new(exr::ExrWriter::new(file, request, cancel)?),
@@ -156,6 +178,36 @@ pub(crate) fn create_until(
         row_bytes: request.row_bytes(),
         missing_rows: request.pixels[1] as usize,
     }))
+}
+
+/// A file that is on the disk before it is in its place.
+struct Durable(Box<dyn PendingFile>);
+
+impl Write for Durable {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl Seek for Durable {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
+impl PendingFile for Durable {
+    fn sync(&mut self) -> io::Result<()> {
+        self.0.sync()
+    }
+
+    fn commit(mut self: Box<Self>) -> io::Result<()> {
+        self.0.sync()?;
+        self.0.commit()
+    }
 }
 
 /// The key that a map was written with, read from the start of the file; `None` if there is no such

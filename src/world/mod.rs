@@ -1,10 +1,20 @@
 //! The one door to files: everything that Yosegi reads or writes passes here.
 
+mod again;
 mod disk;
 mod memory;
+mod notices;
+mod stamp;
+mod sweep;
+mod traced;
+mod unfinished;
 
 pub use disk::Disk;
 pub use memory::Memory;
+pub use notices::{Heard, Notices, NoticesError, Wake};
+pub use stamp::Stamp;
+pub use traced::{Doubt, Trace, Traced};
+pub use unfinished::abandon_unfinished;
 
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -60,6 +70,19 @@ pub trait World: Send + Sync {
     /// Whatever the operating system says.
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>>;
 
+    /// As [`World::create`], for a file that lies in the folder `aside` until it is committed: one folder
+    /// to sweep, where the places are many. Both have to be on one file system.
+    ///
+    /// # Errors
+    /// As [`World::create`].
+    fn create_aside(&self, path: &Path, _aside: &Path) -> io::Result<Box<dyn PendingFile>> {
+        self.create(path)
+    }
+
+    /// Removes the files in a folder that programs have started and not committed, and that no program
+    /// still writes: one that is killed leaves them behind. What cannot be looked at stays.
+    fn sweep(&self, _folder: &Path) {}
+
     /// The regular files and the folders in a folder, sorted by path.
     ///
     /// # Errors
@@ -75,10 +98,35 @@ pub trait World: Send + Sync {
     fn remove(&self, _path: &Path) -> io::Result<()> {
         Err(io::ErrorKind::Unsupported.into())
     }
+
+    /// The state of a file, which is another one after almost every change.
+    ///
+    /// # Errors
+    /// As [`World::list`].
+    fn stamp(&self, _path: &Path) -> io::Result<Stamp> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    /// Starts to listen for changes; `wake` hears of them.
+    ///
+    /// # Errors
+    /// Why there are no notices: then one has to look again and again.
+    fn notices(&self, _wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
+        Err(NoticesError::new("this kind of file system sends none"))
+    }
 }
 
 /// A file that is not there yet: dropped without a commit, it leaves nothing behind.
 pub trait PendingFile: Write + Seek + Send {
+    /// Waits until what was written is on the disk: after a loss of power the file is then the old one or
+    /// the new one, never an empty one.
+    ///
+    /// # Errors
+    /// Whatever the operating system says; the file can then only be dropped.
+    fn sync(&mut self) -> io::Result<()> {
+        self.flush()
+    }
+
     /// Puts the file in its place at once, replacing what was there.
     ///
     /// # Errors

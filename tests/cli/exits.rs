@@ -108,6 +108,13 @@ fn a_call_without_a_command_is_2_and_help_is_0() {
     assert_eq!(code(&place.call(&["paint"])), 2);
     let help = place.call(&["--help"]);
     assert!(code(&help) == 0 && stdout(&help).contains("Exit codes"));
+    for exit in [
+        "0 done", "1 a ", "2 the", "3 a ", "4 a ", "129 the", "130 int", "143 ter",
+    ] {
+        let text = stdout(&help).replace(['\n', '\r'], " ");
+        let text: Vec<&str> = text.split_whitespace().collect();
+        assert!(text.join(" ").contains(exit), "{exit}");
+    }
     assert_eq!(
         stdout(&place.call(&["--version"])),
         format!("yosegi {}\n", env!("CARGO_PKG_VERSION"))
@@ -141,40 +148,4 @@ fn a_reader_that_closes_the_pipe_is_no_failure() {
             "{arguments:?}"
         );
     }
-}
-
-#[cfg(unix)]
-#[test]
-fn an_interrupt_leaves_no_map_and_is_130() {
-    let place = Place::new(BOARD);
-    let mut child = start(
-        &place,
-        &[
-            "render",
-            "recipe.ron",
-            "--only",
-            "board",
-            "--size",
-            "6000x6000",
-            "--no-cache",
-            "--json",
-            "--threads",
-            "2",
-        ],
-    );
-    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-    assert!(
-        lines.any(|line| line.unwrap().contains("\"progress\"")),
-        "it was never under way"
-    );
-    let kill = std::process::Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(kill.success());
-    let rest: Vec<String> = lines.map(Result::unwrap).collect();
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(code(&output), 130, "{}", stderr(&output));
-    assert!(rest.last().unwrap().contains("\"cancelled\""), "{rest:?}");
-    assert!(place.names("out").is_empty());
 }

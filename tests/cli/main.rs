@@ -3,15 +3,17 @@
 
 mod exits;
 mod json;
+mod places;
 mod render;
 mod shell;
+#[cfg(unix)]
+mod signals;
 mod tell;
 mod why;
 
 use assert_cmd::Command;
 use serde_json::Value;
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
 use tempfile::TempDir;
@@ -97,11 +99,13 @@ impl Place {
         files
     }
 
+    /// The names of what is in a folder, which may change meanwhile.
     fn names(&self, folder: &str) -> Vec<String> {
-        self.files(folder)
-            .into_iter()
-            .map(|(name, _)| name)
-            .collect()
+        let entries = fs::read_dir(self.path(folder)).into_iter().flatten();
+        let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name();
+        let mut names: Vec<_> = entries.map(|it| name(it).into_string().unwrap()).collect();
+        names.sort();
+        names
     }
 }
 

@@ -1,10 +1,15 @@
 //! The world on disk: files are replaced by a rename, so a reader sees the old one or the new one.
 
-use super::{Listed, PendingFile, World};
+mod notices;
+
+use super::again::Patience;
+use super::sweep;
+use super::unfinished::{self, Unfinished};
+use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
+use notices::DiskNotices;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Read, Seek, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// The disk.
 #[derive(Clone, Copy, Debug, Default)]
@@ -38,15 +43,21 @@ impl World for Disk {
     }
 
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
-        let path = behind_links(path)?;
-        if path.exists() {
-            // A folder cannot be replaced, and a device must not be.
-            require_regular(&path)?;
+        let real = behind_links(path)?;
+        let folder = folder_of(&real).to_owned();
+        if real != path {
+            // Whoever sweeps the folder of the link does not come here.
+            self.sweep(&folder);
         }
-        let folder = folder_of(&path);
-        fs::create_dir_all(folder)?;
-        let file = BufWriter::with_capacity(1 << 18, temporary_file(folder)?);
-        Ok(Box::new(DiskFile { file, path }))
+        start(real, &folder)
+    }
+
+    fn create_aside(&self, path: &Path, aside: &Path) -> io::Result<Box<dyn PendingFile>> {
+        start(behind_links(path)?, aside)
+    }
+
+    fn sweep(&self, folder: &Path) {
+        sweep::sweep(folder);
     }
 
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
@@ -68,12 +79,36 @@ impl World for Disk {
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {
-        if fs::symlink_metadata(path)?.is_dir() {
-            fs::remove_dir(path)
-        } else {
-            fs::remove_file(path)
-        }
+        let is_folder = fs::symlink_metadata(path)?.is_dir();
+        Patience::default().retry(|| {
+            if is_folder {
+                fs::remove_dir(path)
+            } else {
+                fs::remove_file(path)
+            }
+        })
     }
+
+    fn stamp(&self, path: &Path) -> io::Result<Stamp> {
+        Ok(Stamp::of(&fs::metadata(path)?))
+    }
+
+    fn notices(&self, wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
+        Ok(Box::new(DiskNotices::new(wake)?))
+    }
+}
+
+/// Starts the file that is to lie at `path`, which is no link, in the folder `aside`.
+fn start(path: PathBuf, aside: &Path) -> io::Result<Box<dyn PendingFile>> {
+    match fs::metadata(&path) {
+        // A folder cannot be replaced, a device must not be, and who protects a file means it.
+        Ok(there) if !there.is_file() => return Err(not_regular()),
+        Ok(there) if there.permissions().readonly() => return Err(read_only()),
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    unfinished::make_folder(path.parent())?;
+    Ok(Box::new(Unfinished::new(path, aside)?))
 }
 
 /// Refuses folders, and what would never end, such as a FIFO or a device.
@@ -81,10 +116,15 @@ fn require_regular(path: &Path) -> io::Result<()> {
     if fs::metadata(path)?.is_file() {
         return Ok(());
     }
-    Err(io::Error::new(
-        io::ErrorKind::InvalidInput,
-        "not a regular file",
-    ))
+    Err(not_regular())
+}
+
+fn not_regular() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")
+}
+
+fn read_only() -> io::Error {
+    io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only")
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -109,68 +149,6 @@ fn behind_links(path: &Path) -> io::Result<PathBuf> {
         io::ErrorKind::InvalidInput,
         "too many symbolic links",
     ))
-}
-
-fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".yosegi-").suffix(".part");
-    #[cfg(unix)]
-    builder.permissions(ordinary_permissions());
-    builder.tempfile_in(folder)
-}
-
-/// What a plain new file gets, instead of the owner-only mode of temporary files; the umask applies.
-#[cfg(unix)]
-fn ordinary_permissions() -> fs::Permissions {
-    use std::os::unix::fs::PermissionsExt;
-    fs::Permissions::from_mode(0o666)
-}
-
-struct DiskFile {
-    file: BufWriter<NamedTempFile>,
-    path: PathBuf,
-}
-
-impl Write for DiskFile {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
-    }
-}
-
-impl Seek for DiskFile {
-    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
-        self.file.seek(to)
-    }
-}
-
-impl PendingFile for DiskFile {
-    fn commit(self: Box<Self>) -> io::Result<()> {
-        let file = self
-            .file
-            .into_inner()
-            .map_err(io::IntoInnerError::into_error)?;
-        keep_permissions(file.as_file(), &self.path)?;
-        file.persist(&self.path)?;
-        Ok(())
-    }
-}
-
-/// Gives the new file the mode of the one that it replaces.
-fn keep_permissions(file: &File, replaced: &Path) -> io::Result<()> {
-    let old = match fs::metadata(replaced) {
-        Ok(metadata) => metadata.permissions(),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(error),
-    };
-    // File systems without modes refuse to set one, even the one they report.
-    if file.metadata()?.permissions() == old {
-        return Ok(());
-    }
-    file.set_permissions(old)
 }
 
 #[cfg(test)]

@@ -1,0 +1,1 @@
+//! Faults of system calls, injected by `strace`.
