@@ -147,15 +147,16 @@ impl Builder<'_> {
         index: NodeIndex,
         scope: &rayon::Scope<'s>,
     ) {
-        let result = if self.cancel.is_cancelled() {
-            None
-        } else {
-            self.build_node(plan, built, index)
-                .unwrap_or_else(|failure| {
-                    failures.push(diagnose(plan, index, failure));
-                    None
-                })
-        };
+        if self.cancel.is_cancelled() {
+            // Nothing is asked of what was built.
+            return;
+        }
+        let result = self
+            .build_node(plan, built, index)
+            .unwrap_or_else(|failure| {
+                failures.push(diagnose(plan, index, failure));
+                None
+            });
         let stored = built.cells[&index].result.set(result);
         debug_assert!(stored.is_ok(), "a node is built once");
         for reader in plan
