@@ -4,7 +4,7 @@ use super::place::{End, Outcome, STATES, State};
 use super::world::{Act, Faulty};
 use super::*;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use yosegi::world::World;
 
@@ -84,6 +84,7 @@ fn fail(place: &Place, number: usize, error: Errno) -> Option<(Act, Where, Promi
     let promised = promise(act, lies, state, error);
     keep(promised, &outcome, &path, error, &context);
     place.judge(outcome.end == End::Done, &context);
+    assert_eq!(place.unfinished(), [] as [PathBuf; 0], "{context}");
     place.recover(&context);
     Some((act, lies, promised))
 }
