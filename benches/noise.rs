@@ -66,6 +66,7 @@ fn noise(output: usize, literals: &[(&str, Value)]) -> Field {
     let build = Build {
         node: &Arc::from("bench"),
         seed: 0,
+        cancel: None,
     };
     let outputs = (kind.build)(&Inputs::new(kind, &values), &build).expect("the node can be built");
     match &outputs[output] {
@@ -80,6 +81,7 @@ fn ours(program: &Program, level: Level, filtering: bool, scratch: &mut Scratch)
         level,
         cache: None,
         filtering,
+        cancel: None,
     };
     for corner in (0..SIZE * SIZE / TILE / TILE).map(|tile| {
         let across = SIZE / TILE;

@@ -58,6 +58,7 @@ fn lookup(pattern: ColourPattern, time: Field) -> Vec<Field> {
     let build = Build {
         node: &Arc::from("bench"),
         seed: 0,
+        cancel: None,
     };
     let outputs = (kind.build)(&Inputs::new(kind, &values), &build).expect("the node can be built");
     let field = |value| match value {
@@ -83,6 +84,7 @@ fn program(fields: &[Field], target: &Board, level: Level, filtering: bool) -> f
         level,
         cache: None,
         filtering,
+        cancel: None,
     };
     let program = Program::compile(fields);
     let samples = Samples::Grid {

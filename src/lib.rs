@@ -10,6 +10,7 @@
 
 #![forbid(unsafe_code)]
 
+mod cancel;
 pub mod colour;
 pub mod diagnostics;
 pub mod engine;
@@ -21,4 +22,5 @@ pub mod node;
 pub mod nodes;
 pub mod output;
 pub mod value;
+pub mod watch;
 pub mod world;

@@ -68,6 +68,7 @@ impl Library {
             level: self.level,
             cache: None,
             filtering: true,
+            cancel: None,
         };
         let corners = || (0..SIZE).step_by(TILE as usize);
         for corner in corners().flat_map(|y| corners().map(move |x| [x, y])) {
@@ -114,6 +115,7 @@ fn colour(time: Field, pattern: ColourPattern) -> Field {
     let build = Build {
         node: &Arc::from("bench"),
         seed: 0,
+        cancel: None,
     };
     let outputs = (kind.build)(&Inputs::new(kind, &values), &build).expect("the node can be built");
     match &outputs[0] {

@@ -1,5 +1,6 @@
 //! The command line: arguments, subcommands and exit codes.
 
+mod bytes;
 mod cache;
 mod check;
 mod completions;
@@ -12,6 +13,7 @@ mod render;
 mod report;
 mod sample;
 mod signals;
+mod watch;
 mod why;
 
 use clap::{Args, Parser, Subcommand};
@@ -33,6 +35,8 @@ const EXIT_CODES: &str = "Exit codes: 0 done, 1 a node failed, 2 the recipe or t
 enum Command {
     /// Render the outputs of recipes into image files.
     Render(render::Arguments),
+    /// Render recipes, and again whenever a file that they read has changed.
+    Watch(watch::Arguments),
     /// Report everything that is wrong with recipes: builds their nodes, but evaluates and writes nothing.
     Check(check::Arguments),
     /// Explain what a render would do with a node or an output, and why.
@@ -112,6 +116,7 @@ struct Recipes {
 pub(crate) fn main() -> ExitCode {
     let exit = match Arguments::parse().command {
         Command::Render(arguments) => render::run(&arguments),
+        Command::Watch(arguments) => watch::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Why(arguments) => why::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),

@@ -9,17 +9,17 @@ use yosegi::engine::{Cancel, Engine, Options, Render};
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    recipes: Recipes,
+    pub(super) recipes: Recipes,
     /// Folder for the maps; with several recipes each gets a folder in it.
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     output: PathBuf,
     #[command(flatten)]
-    size: SizeArguments,
+    pub(super) size: SizeArguments,
     /// Only this output; may be given several times.
     #[arg(long, value_name = "OUTPUT")]
-    only: Vec<String>,
+    pub(super) only: Vec<String>,
     #[command(flatten)]
-    recipe: RecipeArguments,
+    pub(super) recipe: RecipeArguments,
     #[command(flatten)]
     engine: EngineArguments,
     #[command(flatten)]
@@ -31,7 +31,8 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Exit {
     let cancel = Cancel::new();
-    let signals = signals::listen(&cancel);
+    let switch = cancel.clone();
+    let signals = signals::listen(move || switch.cancel());
     let options = match engine_options(arguments) {
         Ok(options) => options,
         Err(problem) => {
@@ -90,14 +91,18 @@ fn announce(maps: impl IntoIterator<Item = PathBuf>, json: bool) {
 }
 
 /// The folder for the maps; of several recipes each has one of its own, since outputs may share names.
-fn folder_of(arguments: &Arguments, recipe: &Path) -> PathBuf {
+pub(super) fn folder_of(arguments: &Arguments, recipe: &Path) -> PathBuf {
     match recipe.file_stem() {
         Some(stem) if arguments.recipes.recipes.len() > 1 => arguments.output.join(stem),
         _ => arguments.output.clone(),
     }
 }
 
-fn engine_options(arguments: &Arguments) -> Result<Options, String> {
+/// How an engine works for these arguments.
+///
+/// # Errors
+/// If this machine lacks the vector instructions that are asked for.
+pub(super) fn engine_options(arguments: &Arguments) -> Result<Options, String> {
     Ok(Options {
         threads: arguments.engine.threads.map(usize::from),
         tile: arguments.tile,

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
-use yosegi::engine::Cancel;
 use yosegi::world::abandon_unfinished;
 
 /// How long a run may take to stop by itself: it may be in the midst of what cannot be stopped, such as
@@ -34,16 +33,16 @@ impl Signals {
     }
 }
 
-/// From now on the first signal throws `cancel`. After a second one, or if the run does not stop soon, the
+/// From now on the first signal calls `stop`. After a second one, or if the run does not stop soon, the
 /// program ends at once; whatever it has begun to write is gone then, and no file is torn.
 ///
 /// Signals that the caller has the program ignore, as `nohup` does, stay ignored.
-pub(super) fn listen(cancel: &Cancel) -> Signals {
+pub(super) fn listen(stop: impl FnOnce() + Send + 'static) -> Signals {
     let exit = Arc::new(AtomicU8::new(0));
-    let (first, cancel) = (Arc::clone(&exit), cancel.clone());
+    let first = Arc::clone(&exit);
     let started = Arrivals::new().and_then(|arrivals| {
         let thread = thread::Builder::new().name("signals".to_owned());
-        thread.spawn(move || follow(arrivals, &first, &cancel))
+        thread.spawn(move || follow(arrivals, &first, stop))
     });
     if let Err(error) = started {
         report::problem(&format!("signals will end the program at once: {error}"));
@@ -51,13 +50,12 @@ pub(super) fn listen(cancel: &Cancel) -> Signals {
     Signals { exit }
 }
 
-fn follow(mut arrivals: Arrivals, first: &AtomicU8, cancel: &Cancel) {
+fn follow(mut arrivals: Arrivals, first: &AtomicU8, stop: impl FnOnce() + Send + 'static) {
     let exit = arrivals.wait();
     first.store(exit as u8, Ordering::Relaxed);
     let end = Instant::now() + GRACE;
     // A run that puts a file in place has to be waited for, but not by whoever hears the second signal.
-    let cancel = cancel.clone();
-    thread::spawn(move || cancel.cancel());
+    thread::spawn(stop);
     while Instant::now() < end && !arrivals.is_another() {
         thread::sleep(PAUSE);
     }

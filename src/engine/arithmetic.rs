@@ -1,32 +1,36 @@
 //! Arithmetic of recipes (`"= 0.03 * look.position"`) as fields.
 
+use super::Cancel;
 use crate::field::{Block, Field, InputColumn, Kernel, Sampling};
 use crate::graph::{Arithmetic, Function, Link, Operator};
 use crate::key::KeyHasher;
 use std::sync::Arc;
 
-/// The field of an expression whose links `field_of` resolves, on behalf of `node`.
+/// The field of an expression whose links `field_of` resolves, on behalf of `node`; `None` if the run was
+/// cancelled.
 pub(super) fn field(
     node: &Arc<str>,
     arithmetic: &Arithmetic,
     field_of: &dyn Fn(&Link) -> Field,
-) -> Field {
-    let operand = |inner: &Arithmetic| field(node, inner, field_of);
-    match arithmetic {
+    cancel: &Cancel,
+) -> Option<Field> {
+    if cancel.is_cancelled() {
+        return None;
+    }
+    let operand = |inner: &Arithmetic| field(node, inner, field_of, cancel);
+    Some(match arithmetic {
         Arithmetic::Number(number) => Field::constant(*number),
         Arithmetic::Link(link) => field_of(link),
-        Arithmetic::Negate(inner) => apply(node, Operation::Negate, vec![operand(inner)]),
-        Arithmetic::Binary(operator, sides) => apply(
-            node,
-            Operation::Binary(*operator),
-            sides.iter().map(operand).collect(),
-        ),
-        Arithmetic::Call(function, arguments) => apply(
-            node,
-            Operation::Call(*function),
-            arguments.iter().map(operand).collect(),
-        ),
-    }
+        Arithmetic::Negate(inner) => apply(node, Operation::Negate, vec![operand(inner)?]),
+        Arithmetic::Binary(operator, sides) => {
+            let sides: Option<Vec<Field>> = sides.iter().map(operand).collect();
+            apply(node, Operation::Binary(*operator), sides?)
+        }
+        Arithmetic::Call(function, arguments) => {
+            let arguments: Option<Vec<Field>> = arguments.iter().map(operand).collect();
+            apply(node, Operation::Call(*function), arguments?)
+        }
+    })
 }
 
 fn apply(node: &Arc<str>, operation: Operation, operands: Vec<Field>) -> Field {

@@ -178,6 +178,7 @@ impl Builder<'_> {
             let build = Build {
                 node: &node.name,
                 seed: node.origin.seed,
+                cancel: Some(self.cancel),
             };
             let inputs = Inputs::within(node.kind, &inputs, Arc::clone(&self.budget));
             let values = call(|| (node.kind.build)(&inputs, &build))?;
@@ -254,7 +255,7 @@ pub(super) struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
-    /// The inputs in order; `None` if something they link to has failed.
+    /// The inputs in order; `None` if something they link to has failed, or the run was cancelled.
     pub(super) fn inputs(&self) -> Option<Vec<Option<Value>>> {
         self.node
             .inputs
@@ -263,7 +264,7 @@ impl Resolver<'_> {
             .collect()
     }
 
-    /// `None` if a link leads to a failed node, `Some(None)` for an absent input.
+    /// `None` if a link leads to a failed node or the run was cancelled, `Some(None)` for an absent input.
     fn value(&self, source: &Source) -> Option<Option<Value>> {
         Some(match source {
             Source::Absent => None,
@@ -281,11 +282,9 @@ impl Resolver<'_> {
                     return Some(Some(Value::Number(number)));
                 }
                 let linked = |link: &Link| self.field(link);
-                Some(Value::Field(arithmetic::field(
-                    &self.node.name,
-                    expression,
-                    &linked,
-                )))
+                let cancel = &self.plan.cancel;
+                let field = arithmetic::field(&self.node.name, expression, &linked, cancel);
+                Some(Value::Field(field?))
             }
             Source::Channels(channels) => {
                 let mut values = vec![];

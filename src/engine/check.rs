@@ -14,7 +14,9 @@ impl Engine {
     /// As [`Engine::render`], all at once: failures of nodes, and outputs over the limit or with a file
     /// in common.
     pub fn check(&self, request: &Render<'_>) -> Result<(), RunError> {
-        self.threads.install(|| self.check_all(request))
+        let run = self.until(&request.cancel, &self.world);
+        self.threads
+            .install(|| run.ended(run.check_all(request), request.listener))
     }
 
     fn check_all(&self, request: &Render<'_>) -> Result<(), RunError> {
@@ -30,7 +32,7 @@ impl Engine {
             chosen_outputs(request)?
         };
         let plan = self.plan(graph, &if is_whole { all(graph) } else { wanted.clone() })?;
-        let built = self.build(&plan, request.listener, &request.cancel)?;
+        let built = self.build(&plan, request.listener)?;
         let store = self.options.store.as_deref();
         let protected = files::Protected::new(&*self.world, &plan, store);
         let outputs = self.outputs(request, &plan, &protected, &wanted);

@@ -1,6 +1,8 @@
 //! What a run reports while it goes on: progress bars, `--json`, tests and `why` read the same events.
 
+use crate::cancel::Cancel;
 use serde::Serialize;
+use std::io;
 use std::path::PathBuf;
 
 /// Where something came from that did not have to be made.
@@ -128,6 +130,14 @@ pub enum Event {
     },
     /// The run was stopped before its end.
     Cancelled,
+}
+
+/// Says that the store cannot be used, unless that comes of a cancelled run.
+pub(super) fn tell_store_failed(listener: &dyn Listener, cancel: &Cancel, error: &io::Error) {
+    if !cancel.is_cancelled() {
+        let reason = error.to_string();
+        listener.hear(Event::StoreFailed { reason });
+    }
 }
 
 /// Receives events, possibly from several threads at once.

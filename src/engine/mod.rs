@@ -3,7 +3,6 @@
 mod arithmetic;
 mod beside;
 mod build;
-mod cancel;
 mod check;
 mod content;
 mod event;
@@ -15,16 +14,18 @@ mod memory;
 mod pace;
 mod paint;
 mod plan;
+mod preview;
 mod progress;
 mod render;
 mod reuse;
 mod sample;
+mod stoppable;
 mod store;
 mod target;
 mod wanted;
 mod why;
 
-pub use cancel::Cancel;
+pub use crate::cancel::Cancel;
 pub use event::{Event, From as ReusedFrom, Listener};
 pub use keeping::{StoreFamily, clean_store, store_status};
 pub use pace::Pace;
@@ -45,6 +46,7 @@ use plan::Plan;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
+use stoppable::Stoppable;
 use store::Store;
 
 /// Raised whenever pixels or files change for a reason outside a kind: filtering, arithmetic, encoding.
@@ -90,13 +92,18 @@ impl Default for Options {
     }
 }
 
-/// Evaluates recipes, and remembers what it has made.
+/// Evaluates recipes, and remembers what it has made; its copies share everything.
+#[derive(Clone)]
 pub struct Engine {
     world: Arc<dyn World>,
+    /// Where the files that a recipe names are read.
+    inputs: Arc<dyn World>,
     options: Options,
-    memory: Memory,
+    memory: Arc<Memory>,
     store: Option<Store>,
-    threads: rayon::ThreadPool,
+    threads: Arc<rayon::ThreadPool>,
+    /// Stops the run that this engine was made for; nobody throws that of a caller's engine.
+    cancel: Cancel,
 }
 
 /// Why a run ended without its results.
@@ -141,21 +148,48 @@ impl Engine {
     /// If the system gives no threads.
     pub fn new(world: Arc<dyn World>, mut options: Options) -> io::Result<Engine> {
         options.tile = options.tile.clamp(1, LARGEST_TILE);
-        let threads = rayon::ThreadPoolBuilder::new()
-            .num_threads(options.threads.unwrap_or(0))
-            .build()
-            .map_err(io::Error::other)?;
         let store = options
             .store
             .clone()
             .map(|folder| Store::new(Arc::clone(&world), folder));
         Ok(Engine {
-            memory: Memory::new(options.memory),
+            memory: Arc::new(Memory::new(options.memory)),
+            threads: threads(&options)?,
+            inputs: Arc::clone(&world),
             world,
             options,
             store,
-            threads,
+            cancel: Cancel::new(),
         })
+    }
+
+    /// An engine with threads of its own that shares the memory and the store of this one: it starts at
+    /// once even if this one is in a call that nothing can stop.
+    ///
+    /// # Errors
+    /// If the system gives no threads.
+    pub fn beside(&self) -> io::Result<Engine> {
+        Ok(Engine {
+            threads: threads(&self.options)?,
+            ..self.clone()
+        })
+    }
+
+    /// This engine for one run: whatever it does ends when `cancel` is thrown, and what the recipe names is
+    /// read from `inputs`.
+    fn until(&self, cancel: &Cancel, inputs: &Arc<dyn World>) -> Engine {
+        let stoppable = |world: &Arc<dyn World>| -> Arc<dyn World> {
+            Arc::new(Stoppable::new(Arc::clone(world), cancel.clone()))
+        };
+        let world = stoppable(&self.world);
+        let store = self.store.as_ref();
+        Engine {
+            store: store.map(|store| store.through(Arc::clone(&world))),
+            inputs: stoppable(inputs),
+            world,
+            cancel: cancel.clone(),
+            ..self.clone()
+        }
     }
 
     /// Bytes of structures and columns that the engine remembers.
@@ -163,24 +197,19 @@ impl Engine {
         self.memory.bytes()
     }
 
-    fn build(
-        &self,
-        plan: &Plan<'_>,
-        listener: &dyn Listener,
-        cancel: &Cancel,
-    ) -> Result<Built, RunError> {
+    fn build(&self, plan: &Plan<'_>, listener: &dyn Listener) -> Result<Built, RunError> {
         let builder = Builder {
             memory: &self.memory,
             store: self.store.as_ref(),
             listener,
             budget: std::sync::Arc::default(),
-            cancel,
+            cancel: &self.cancel,
         };
         builder.build(plan)
     }
 
     fn plan<'g>(&self, graph: &'g Graph, wanted: &[NodeIndex]) -> Result<Plan<'g>, RunError> {
-        Plan::new(graph, wanted, &*self.world)
+        Plan::new(graph, wanted, &*self.inputs, &self.cancel)
     }
 
     fn context(&self) -> RunContext<'_> {
@@ -189,8 +218,16 @@ impl Engine {
             cache: self
                 .memory
                 .is_enabled()
-                .then_some(&self.memory as &dyn ColumnCache),
+                .then_some(&*self.memory as &dyn ColumnCache),
             filtering: self.options.filtering,
+            cancel: Some(&self.cancel),
         }
     }
+}
+
+fn threads(options: &Options) -> io::Result<Arc<rayon::ThreadPool>> {
+    let threads = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads.unwrap_or(0))
+        .build();
+    threads.map(Arc::new).map_err(io::Error::other)
 }

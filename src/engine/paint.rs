@@ -148,7 +148,7 @@ impl Painter<'_> {
                 return None;
             }
             let mut scratch = lock(scratches).pop().unwrap_or_default();
-            let painted = self.paint_tile(encoders, *tile, &mut scratch);
+            let painted = self.paint_tile(encoders, *tile, &mut scratch)?;
             lock(scratches).push(scratch);
             self.meter.tile();
             Some(painted)
@@ -159,7 +159,13 @@ impl Painter<'_> {
             .collect()
     }
 
-    fn paint_tile(&self, encoders: &[Encoder], tile: Tile, scratch: &mut Scratch) -> Painted {
+    /// `None` if the run was cancelled.
+    fn paint_tile(
+        &self,
+        encoders: &[Encoder],
+        tile: Tile,
+        scratch: &mut Scratch,
+    ) -> Option<Painted> {
         let program = self.program;
         let margin = program.margin();
         let grid = PixelGrid::tile(tile.corner, tile.size, margin);
@@ -172,6 +178,9 @@ impl Painter<'_> {
             scratch,
             &self.context,
         );
+        if self.cancel.is_cancelled() {
+            return None;
+        }
         let [width, height] = tile.size.map(|side| side as usize);
         let mut painted = Painted {
             tile,
@@ -195,7 +204,7 @@ impl Painter<'_> {
             painted.rows.push(rows);
             painted.faults.push(faults);
         }
-        painted
+        Some(painted)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What has to run for some nodes: their ancestors in order, the files these read, and plan keys.
 
-use super::RunError;
 use super::beside::Beside;
+use super::{Cancel, RunError};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::graph::{Arithmetic, Graph, NamedFile, Source};
 use crate::key::{Key, KeyHasher};
@@ -23,6 +23,8 @@ pub(super) struct Plan<'g> {
     pub(super) places: Vec<PathBuf>,
     /// For every node in `order` what it is, before anything has run.
     pub(super) keys: HashMap<NodeIndex, Key>,
+    /// Stops the run.
+    pub(super) cancel: Cancel,
 }
 
 impl<'g> Plan<'g> {
@@ -31,6 +33,7 @@ impl<'g> Plan<'g> {
         graph: &'g Graph,
         wanted: &[NodeIndex],
         world: &dyn World,
+        cancel: &Cancel,
     ) -> Result<Plan<'g>, RunError> {
         let order = ancestors(graph, wanted);
         let ReadFiles { files, places } = read_files(graph, &order, world)?;
@@ -40,9 +43,13 @@ impl<'g> Plan<'g> {
             files,
             places,
             keys: HashMap::new(),
+            cancel: cancel.clone(),
         };
         for index in plan.order.clone() {
             let key = plan.node_key(index);
+            if cancel.is_cancelled() {
+                return Err(RunError::Cancelled);
+            }
             plan.keys.insert(index, key);
         }
         Ok(plan)
@@ -57,6 +64,7 @@ impl<'g> Plan<'g> {
             files: self.files.clone(),
             places: self.places.clone(),
             keys: self.keys.clone(),
+            cancel: self.cancel.clone(),
         }
     }
 
@@ -105,6 +113,10 @@ impl<'g> Plan<'g> {
     }
 
     fn add_arithmetic(&self, key: &mut KeyHasher, arithmetic: &Arithmetic) {
+        if self.cancel.is_cancelled() {
+            // Expressions may be long; nobody wants the key any more.
+            return;
+        }
         match arithmetic {
             Arithmetic::Number(number) => {
                 key.text("number").number(*number);

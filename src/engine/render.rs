@@ -1,7 +1,7 @@
 //! Renders the outputs of a recipe: finds what is there already, and paints the rest.
 
 use super::build::Built;
-use super::event::{Event, Listener};
+use super::event::{Event, Listener, tell_store_failed};
 use super::known::{KnownMap, KnownOutput, OutputRecord, repeat_warnings};
 use super::paint::{Painter, Sheet};
 use super::plan::Plan;
@@ -13,10 +13,12 @@ use crate::graph::{Graph, no_output};
 use crate::key::Key;
 use crate::output::{self, Encoder, Faults, MapRequest};
 use crate::value::Maps;
+use crate::world::World;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What to render, and who is told.
@@ -61,13 +63,35 @@ impl Engine {
     /// What is wrong with nodes or files, which limit was reached, or that the run was cancelled. Maps
     /// that were finished before stay in place; of others nothing is left.
     pub fn render(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
-        self.threads.install(|| {
-            let result = self.render_outputs(request);
-            if matches!(result, Err(RunError::Cancelled)) {
-                request.listener.hear(Event::Cancelled);
-            }
-            result
-        })
+        self.render_reading(request, &self.world)
+    }
+
+    /// As [`Engine::render`], but reads the files that the recipe names from `inputs`, such as a
+    /// [`Traced`](crate::world::Traced) world.
+    ///
+    /// # Errors
+    /// As [`Engine::render`].
+    pub fn render_reading(
+        &self,
+        request: &Render<'_>,
+        inputs: &Arc<dyn World>,
+    ) -> Result<Vec<RenderedMap>, RunError> {
+        let run = self.until(&request.cancel, inputs);
+        self.threads
+            .install(|| run.ended(run.render_outputs(request), request.listener))
+    }
+
+    /// How a run has ended: whatever a cancelled one says is wrong comes of that.
+    pub(super) fn ended<T>(
+        &self,
+        result: Result<T, RunError>,
+        listener: &dyn Listener,
+    ) -> Result<T, RunError> {
+        if result.is_err() && self.cancel.is_cancelled() {
+            listener.hear(Event::Cancelled);
+            return Err(RunError::Cancelled);
+        }
+        result
     }
 
     fn render_outputs(&self, request: &Render<'_>) -> Result<Vec<RenderedMap>, RunError> {
@@ -80,7 +104,7 @@ impl Engine {
         let missing = outputs.iter().zip(&known).filter(|(_, it)| it.is_none());
         let missing: Vec<NodeIndex> = missing.map(|(output, _)| output.index).collect();
         let rest = plan.part(&missing);
-        let built = self.build(&rest, request.listener, &request.cancel)?;
+        let built = self.build(&rest, request.listener)?;
         repeat_warnings(known.iter().flatten(), request, &plan, &built);
         let known = known.into_iter().map(|known| Some(known?.maps));
         let known: Vec<Option<Vec<KnownMap>>> = known.collect();
@@ -133,9 +157,7 @@ impl Engine {
     /// Records what has run, for [`Engine::why`].
     fn remember_run(&self, request: &Render<'_>, plan: &Plan<'_>) {
         if let Err(error) = self.record_run(plan, request.pixels) {
-            request.listener.hear(Event::StoreFailed {
-                reason: error.to_string(),
-            });
+            tell_store_failed(request.listener, &self.cancel, &error);
         }
     }
 
@@ -235,9 +257,8 @@ impl Output<'_> {
             return Ok(self.announce(placed.into_iter().map(|known| &known.map)));
         }
         // The store has lost a map since it was asked: the output has to be made after all.
-        let alone = self.engine.plan(self.request.graph, &[self.index])?;
-        let (listener, cancel) = (self.request.listener, &self.request.cancel);
-        let built = self.engine.build(&alone, listener, cancel)?;
+        let alone = self.plan.part(&[self.index]);
+        let built = self.engine.build(&alone, self.request.listener)?;
         built.complete()?;
         let told: Vec<&str> = placed.iter().map(|known| &*known.map.channel).collect();
         let maps = self.maps(&built);
@@ -291,7 +312,9 @@ impl Output<'_> {
         meter: &Meter<'_>,
     ) -> Result<Vec<Faults>, RunError> {
         let field = |map: &&WantedMap| self.field(maps, &map.channel).0;
-        let program = Program::compile(&missing.iter().map(field).collect::<Vec<Field>>());
+        let fields: Vec<Field> = missing.iter().map(field).collect();
+        let cancel = &self.engine.cancel;
+        let program = Program::compile_until(&fields, cancel).ok_or(RunError::Cancelled)?;
         self.check_program(&program)?;
         let sheets: io::Result<Vec<Sheet>> = missing
             .iter()
@@ -305,7 +328,7 @@ impl Output<'_> {
             options: &self.engine.options,
             context: self.engine.context(),
             listener: self.request.listener,
-            cancel: &self.request.cancel,
+            cancel,
             meter,
         };
         painter.paint(&mut sheets)?;
@@ -337,14 +360,15 @@ impl Output<'_> {
             channel: map.channel.clone(),
         };
         let range = maps.ranges.get(&map.channel).copied();
+        let (world, cancel) = (&*self.engine.world, &self.engine.cancel);
         let create = if self.engine.options.durable {
             output::create_durable
         } else {
-            output::create
+            output::create_until
         };
         Ok(Sheet {
             encoder: Encoder::new(kind, maps.format, range),
-            writer: create(&*self.engine.world, &self.path(map), &request)?,
+            writer: create(world, &self.path(map), &request, cancel)?,
             faults: Faults::default(),
         })
     }
@@ -371,9 +395,7 @@ impl Output<'_> {
             .and_then(|()| postcard::to_stdvec(&record).map_err(io::Error::other))
             .and_then(|bytes| store.put("plan", &self.plan_key(), &bytes));
         if let Err(error) = stored {
-            self.request.listener.hear(Event::StoreFailed {
-                reason: error.to_string(),
-            });
+            tell_store_failed(self.request.listener, &self.engine.cancel, &error);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::build::Builder;
 use super::content;
-use super::event::{Event, From};
+use super::event::{Event, From, tell_store_failed};
 use super::memory::Structure;
 use crate::graph::{Node, Source};
 use crate::key::{Key, KeyHasher};
@@ -74,9 +74,7 @@ impl Builder<'_> {
         self.memory
             .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
         if let Some(Err(error)) = self.store.map(|store| store.put("structure", &key, &bytes)) {
-            self.listener.hear(Event::StoreFailed {
-                reason: error.to_string(),
-            });
+            tell_store_failed(self.listener, self.cancel, &error);
         }
         let milliseconds = nanoseconds(start) * 1e-6;
         self.listener.hear(Event::StructureBuilt {

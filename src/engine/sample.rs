@@ -1,7 +1,7 @@
 //! Samples fields of any node at points of the caller's own, unfiltered and on all threads.
 
 use super::event::Listener;
-use super::{Cancel, Engine, RunError};
+use super::{Engine, RunError};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::field::{Field, Program, Samples, Scratch};
 use crate::graph::{Graph, Link};
@@ -40,9 +40,7 @@ impl Engine {
         let outputs = outputs(graph, node)?;
         let nodes: Vec<NodeIndex> = outputs.iter().map(|(_, link)| link.node).collect();
         let plan = self.plan(graph, &nodes)?;
-        let built = self
-            .threads
-            .install(|| self.build(&plan, listener, &Cancel::new()))?;
+        let built = self.threads.install(|| self.build(&plan, listener))?;
         built.complete()?;
         let value = |link: &Link| &built.values(link.node)[link.output];
         let values = outputs.iter().map(|(output, link)| (*output, value(link)));

@@ -56,6 +56,14 @@ impl Store {
         Store { world, folder }
     }
 
+    /// The same store behind another world.
+    pub(super) fn through(&self, world: Arc<dyn World>) -> Store {
+        Store {
+            world,
+            ..self.clone()
+        }
+    }
+
     /// The bytes of the entry `key` of the family `family`.
     pub(super) fn get(&self, family: &str, key: &Key) -> Option<Vec<u8>> {
         let mut entry = self.world.read(&self.path(family, key)).ok()?;

@@ -5,9 +5,10 @@
 //! slots by liveness, so a program needs as many buffers as are alive at once.
 
 use super::{Field, Kernel, Operation, Sampling};
+use crate::cancel::Cancel;
 use crate::key::{Key, KeyHasher};
 use std::collections::{HashMap, HashSet};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// A linear list of column operations that gives the columns of some fields.
 #[derive(Debug)]
@@ -53,12 +54,23 @@ pub(super) struct KernelStep {
 pub(super) struct Within {
     field: Field,
     program: OnceLock<Program>,
+    compiling: Mutex<()>,
 }
 
 impl Within {
-    pub(super) fn program(&self) -> &Program {
-        let compile = || Compiler::new(false).compile(std::slice::from_ref(&self.field));
-        self.program.get_or_init(compile)
+    /// `None` if the run is cancelled before it is compiled.
+    pub(super) fn program(&self, cancel: Option<&Cancel>) -> Option<&Program> {
+        if let Some(program) = self.program.get() {
+            return Some(program);
+        }
+        // One thread compiles, the others wait for it.
+        let _compiling = self.compiling.lock();
+        if self.program.get().is_none() {
+            let field = std::slice::from_ref(&self.field);
+            let compiled = Compiler::new(false).compile(field, cancel)?;
+            let _ = self.program.set(compiled);
+        }
+        self.program.get()
     }
 }
 
@@ -68,7 +80,13 @@ pub(super) const POSITION: [usize; 3] = [0, 1, 2];
 impl Program {
     /// Compiles a program whose outputs are the columns of `fields`, in order.
     pub fn compile(fields: &[Field]) -> Program {
-        Compiler::new(true).compile(fields)
+        let program = Compiler::new(true).compile(fields, None);
+        program.expect("nobody cancels it")
+    }
+
+    /// As [`Program::compile`]; `None` if the run is cancelled meanwhile.
+    pub(crate) fn compile_until(fields: &[Field], cancel: &Cancel) -> Option<Program> {
+        Compiler::new(true).compile(fields, Some(cancel))
     }
 
     /// Identifies the program: two with the same key do the same.
@@ -119,14 +137,15 @@ impl Compiler {
         }
     }
 
-    fn compile(mut self, fields: &[Field]) -> Program {
+    /// `None` if the run is cancelled meanwhile.
+    fn compile(mut self, fields: &[Field], cancel: Option<&Cancel>) -> Option<Program> {
         let mut key = KeyHasher::new("program", 1);
         key.whole(i64::from(self.supersampling));
-        let outputs: Vec<Vec<usize>> = fields
+        let outputs: Option<Vec<Vec<usize>>> = fields
             .iter()
             .map(|field| {
                 key.key(field.key());
-                self.columns(field)
+                self.columns(field, cancel)
             })
             .collect();
         let margin = super::cost::assign_margins(&mut self.steps, self.columns);
@@ -134,18 +153,21 @@ impl Compiler {
             steps: self.steps,
             slots: self.columns,
             constants: self.constants,
-            outputs,
+            outputs: outputs?,
             margin,
             key: key.finish(),
         };
-        super::slots::assign(program)
+        Some(super::slots::assign(program))
     }
 
     /// The columns of a field in the root place, with everything it depends on.
-    fn columns(&mut self, field: &Field) -> Vec<usize> {
+    fn columns(&mut self, field: &Field, cancel: Option<&Cancel>) -> Option<Vec<usize>> {
         // A loop instead of recursion: recipes may chain a hundred thousand nodes.
         let mut pending = vec![(field.clone(), 0)];
         while let Some((field, place)) = pending.last().cloned() {
+            if cancel.is_some_and(Cancel::is_cancelled) {
+                return None;
+            }
             if self.columns_of.contains_key(&(field.key(), place)) {
                 pending.pop();
                 continue;
@@ -159,7 +181,7 @@ impl Compiler {
                 pending.extend(missing);
             }
         }
-        self.columns_of[&(field.key(), 0)].clone()
+        Some(self.columns_of[&(field.key(), 0)].clone())
     }
 
     /// The dependencies of a field that have no columns yet.
@@ -246,6 +268,7 @@ impl Compiler {
         let within = self.may_be_supersampled(&*kernel, &inputs).then(|| Within {
             field: self.seen_from_root(field, place),
             program: OnceLock::new(),
+            compiling: Mutex::new(()),
         });
         let key = KeyHasher::new("step", 1)
             .key(field.key())

@@ -3,6 +3,7 @@
 use crate::key::KeyHasher;
 use fearless_simd::Level;
 use std::fmt::Debug;
+use std::ops::Range;
 
 /// How a kernel deals with what happens between two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +72,17 @@ pub struct InputColumn<'a> {
     /// Change from one sample to the next along the picture's rows and columns; empty unless the kernel
     /// asked for it with [`Kernel::reads_spread`].
     pub spread: [&'a [f32]; 2],
+}
+
+impl<'a> InputColumn<'a> {
+    /// The column for some of the samples.
+    pub(super) fn part(&self, range: &Range<usize>) -> InputColumn<'a> {
+        let part = |column: &'a [f32]| column.get(range.clone()).unwrap_or_default();
+        InputColumn {
+            values: part(self.values),
+            spread: self.spread.map(part),
+        }
+    }
 }
 
 /// A block of samples on its way through a kernel.

@@ -1,7 +1,8 @@
 //! Runs a program over one block of samples.
 
 use super::compile::{KernelStep, POSITION, Program, Step};
-use super::{Block, InputColumn, Samples, spread, supersample};
+use super::{Block, InputColumn, Kernel, Samples, spread, supersample};
+use crate::cancel::Cancel;
 use crate::key::{Key, KeyHasher};
 use fearless_simd::Level;
 use std::collections::BTreeMap;
@@ -12,6 +13,9 @@ const PADDING: usize = 16;
 
 /// A kernel dearer than this many nanoseconds a sample is worth keeping columns of.
 const DEAR: f32 = 4.0;
+
+/// Samples that a dear kernel computes between two looks at the switch that cancels the run.
+const PIECE: usize = 1024;
 
 /// The columns of one kernel for one block of samples.
 pub type Columns = Arc<[Vec<f32>]>;
@@ -35,6 +39,15 @@ pub struct RunContext<'a> {
     /// Whether kernels see the spread of their inputs and are supersampled where they bend.
     /// Switched off only to show what filtering is good for.
     pub filtering: bool,
+    /// Stops a run; `None` for one that is not stopped.
+    pub cancel: Option<&'a Cancel>,
+}
+
+impl RunContext<'_> {
+    /// Whether what is computed is not wanted any more.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(Cancel::is_cancelled)
+    }
 }
 
 /// What the nodes did for one block.
@@ -93,13 +106,17 @@ impl Scratch {
 }
 
 impl Program {
-    /// Evaluates the program at `samples`; the results are read with [`Program::output`].
+    /// Evaluates the program at `samples`; the results are read with [`Program::output`]. If the run is
+    /// cancelled meanwhile, it ends early and there are none.
     pub fn run(&self, samples: &Samples<'_>, scratch: &mut Scratch, context: &RunContext<'_>) {
         let padded = samples.len().next_multiple_of(PADDING);
         scratch.prepare(self, samples, padded);
         let stored = self.stored(samples, context);
         let needed = self.needed(&stored);
         for ((step, stored), needed) in self.steps.iter().zip(&stored).zip(needed) {
+            if context.is_cancelled() {
+                return;
+            }
             match (step, stored) {
                 _ if !needed => {}
                 (Step::Spread { of, along }, _) => {
@@ -228,12 +245,7 @@ fn compute(
             }),
         })
         .collect();
-    let mut block = Block {
-        level: context.level,
-        inputs: &inputs,
-        outputs: &mut outputs,
-    };
-    step.kernel.evaluate(&mut block);
+    evaluate(&*step.kernel, &inputs, &mut outputs, context);
     scratch.note(
         &step.node,
         Work {
@@ -246,6 +258,44 @@ fn compute(
     }
     for (slot, column) in step.outputs.iter().zip(outputs) {
         scratch.slots[*slot] = column;
+    }
+}
+
+/// Evaluates a kernel; a dear one in pieces, so that a cancelled run need not wait for the whole block.
+fn evaluate(
+    kernel: &dyn Kernel,
+    inputs: &[InputColumn<'_>],
+    outputs: &mut [Vec<f32>],
+    context: &RunContext<'_>,
+) {
+    let level = context.level;
+    let length = outputs.first().map_or(0, Vec::len);
+    if length <= PIECE || kernel.nanoseconds() < DEAR {
+        kernel.evaluate(&mut Block {
+            level,
+            inputs,
+            outputs,
+        });
+        return;
+    }
+    let mut piece = vec![vec![]; outputs.len()];
+    for start in (0..length).step_by(PIECE) {
+        if context.is_cancelled() {
+            return;
+        }
+        let range = start..length.min(start + PIECE);
+        let inputs: Vec<_> = inputs.iter().map(|input| input.part(&range)).collect();
+        piece
+            .iter_mut()
+            .for_each(|column| column.resize(range.len(), 0.0));
+        kernel.evaluate(&mut Block {
+            level,
+            inputs: &inputs,
+            outputs: &mut piece,
+        });
+        for (output, piece) in outputs.iter_mut().zip(&piece) {
+            output[range.clone()].copy_from_slice(piece);
+        }
     }
 }
 
@@ -264,6 +314,10 @@ fn load(scratch: &mut Scratch, step: &KernelStep, columns: &Columns) {
 }
 
 fn store(scratch: &Scratch, step: &KernelStep, key: Key, context: &RunContext<'_>, padded: usize) {
+    if context.is_cancelled() {
+        // The columns may be half computed.
+        return;
+    }
     let columns: Columns = step
         .outputs
         .iter()

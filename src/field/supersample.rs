@@ -29,7 +29,9 @@ pub(super) fn supersample(
     if pixels.is_empty() {
         return;
     }
-    let within = within.program();
+    let Some(within) = within.program(context.cancel) else {
+        return;
+    };
     let mut inner = scratch.within.take().unwrap_or_default();
     for pixels in pixels.chunks(PIXELS_AT_ONCE) {
         let grid = grid.within_pixels(pixels, SIDE, within.margin());
@@ -42,6 +44,9 @@ pub(super) fn supersample(
             &mut inner,
             context,
         );
+        if context.is_cancelled() {
+            break;
+        }
         for (column, output) in outputs.iter_mut().enumerate() {
             let values = within.output(&inner, 0, column);
             for (values, pixel) in values.chunks_exact(area).zip(pixels) {

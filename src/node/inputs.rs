@@ -2,6 +2,7 @@
 
 use super::Kind;
 use super::ledger::{Budget, Ledger};
+use crate::cancel::Cancel;
 use crate::field::{Field, Kernel};
 use crate::value::{ColourPattern, Domain, FileContents, Material, Skeleton, Value};
 use glam::DVec3;
@@ -73,12 +74,26 @@ pub struct Build<'a> {
     pub node: &'a Arc<str>,
     /// The seed of the recipe.
     pub seed: u64,
+    /// Stops the run; `None` for one that is not stopped.
+    pub cancel: Option<&'a Cancel>,
 }
 
 impl Build<'_> {
     /// The columns that `kernel` computes from `inputs`.
     pub fn kernel(&self, kernel: impl Kernel + 'static, inputs: Vec<Field>) -> Field {
         Field::kernel(self.node, Arc::new(kernel), inputs)
+    }
+
+    /// To be asked in loops that may take longer than some milliseconds.
+    ///
+    /// # Errors
+    /// If the run was cancelled. What is returned then counts for nothing: it is not reported, and the node
+    /// is built again by the next run.
+    pub fn go_on(&self) -> Result<(), Failure> {
+        match self.cancel {
+            Some(cancel) if cancel.is_cancelled() => Err(Failure::new("the run was cancelled")),
+            _ => Ok(()),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::strips::{Division, Strip, Strips};
 use super::{CHANNEL_NAME, KEY_NAME, MapKind, MapRequest, MapWriter, SOFTWARE, invalid};
+use crate::cancel::Cancel;
 use crate::value::{self, MapFormat};
 use crate::world::PendingFile;
 use exr::block::{BlockIndex, UncompressedBlock};
@@ -34,6 +35,7 @@ impl ExrWriter {
     pub(super) fn new(
         mut file: Box<dyn PendingFile>,
         request: &MapRequest,
+        cancel: &Cancel,
     ) -> io::Result<ExrWriter> {
         let layout = Layout::new(request);
         let start = layout.header_bytes().map_err(from_exr)?;
@@ -46,7 +48,10 @@ impl ExrWriter {
         Ok(ExrWriter {
             file,
             layout,
-            strips: Strips::new(Division::of_rows(lines, request.row_bytes(), height)),
+            strips: Strips::new(
+                Division::of_rows(lines, request.row_bytes(), height),
+                cancel,
+            ),
             offsets: Vec::with_capacity(blocks),
             table_start: start.len() as u64,
             position: (start.len() + table.len()) as u64,

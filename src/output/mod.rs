@@ -16,6 +16,7 @@ mod tiff;
 pub use bmp::{LARGEST_BMP, bmp_bytes};
 pub use encode::{Encoder, Faults, MapKind};
 
+use crate::cancel::Cancel;
 use crate::key::Key;
 use crate::value::{FileType, MapFormat};
 use crate::world::{PendingFile, World};
@@ -129,34 +130,45 @@ pub fn create(
     path: &Path,
     request: &MapRequest,
 ) -> io::Result<Box<dyn MapWriter>> {
-    start(path, request, || world.create(path))
+    create_until(world, path, request, &Cancel::new())
 }
 
-/// As [`create`]; the map is on the disk before it replaces what is there, so that a loss of power leaves
-/// the one or the other.
-///
-/// # Errors
-/// As [`create`].
-pub fn create_durable(
+/// As [`create`], for a run that may be cancelled: its rows are then compressed no more.
+pub(crate) fn create_until(
     world: &dyn World,
     path: &Path,
     request: &MapRequest,
+    cancel: &Cancel,
 ) -> io::Result<Box<dyn MapWriter>> {
-    start(path, request, || Ok(Box::new(Durable(world.create(path)?))))
+    start(path, request, cancel, || world.create(path))
+}
+
+/// As [`create_until`]; the map is on the disk before it replaces what is there, so that a loss of power
+/// leaves the one or the other.
+pub(crate) fn create_durable(
+    world: &dyn World,
+    path: &Path,
+    request: &MapRequest,
+    cancel: &Cancel,
+) -> io::Result<Box<dyn MapWriter>> {
+    start(path, request, cancel, || {
+        Ok(Box::new(Durable(world.create(path)?)))
+    })
 }
 
 fn start(
     path: &Path,
     request: &MapRequest,
+    cancel: &Cancel,
     create: impl FnOnce() -> io::Result<Box<dyn PendingFile>>,
 ) -> io::Result<Box<dyn MapWriter>> {
     let start = || -> io::Result<Box<dyn MapWriter>> {
         request.check()?;
         let file = create()?;
         Ok(match request.format.file_type() {
-            FileType::Png => Box::new(png::PngWriter::new(file, request)?),
-            FileType::Exr => Box::new(exr::ExrWriter::new(file, request)?),
-            FileType::Tiff => Box::new(tiff::TiffWriter::new(file, request)?),
+            FileType::Png => Box::new(png::PngWriter::new(file, request, cancel)?),
+            FileType::Exr => Box::new(exr::ExrWriter::new(file, request, cancel)?),
+            FileType::Tiff => Box::new(tiff::TiffWriter::new(file, request, cancel)?),
             FileType::Bmp => Box::new(bmp::BmpWriter::new(file, request)?),
         })
     };

@@ -1,5 +1,6 @@
 //! Strips of rows, worked on by all threads and handed on in order.
 
+use crate::cancel::Cancel;
 use rayon::prelude::*;
 use std::io;
 
@@ -63,16 +64,18 @@ pub(super) struct Strips {
     next: usize,
     pending: Vec<u8>,
     above: Vec<u8>,
+    cancel: Cancel,
 }
 
 impl Strips {
-    pub(super) fn new(division: Division) -> Strips {
+    pub(super) fn new(division: Division, cancel: &Cancel) -> Strips {
         Strips {
             division,
             missing_bytes: division.row_bytes as u64 * division.height as u64,
             next: 0,
             pending: vec![],
             above: vec![0; division.row_bytes],
+            cancel: cancel.clone(),
         }
     }
 
@@ -80,7 +83,7 @@ impl Strips {
     /// `take` gets what it gives, in order.
     ///
     /// # Errors
-    /// The first one of `work` or of `take`.
+    /// The first one of `work` or of `take`, and if the run is cancelled.
     pub(super) fn push<T: Send>(
         &mut self,
         rows: &[u8],
@@ -137,8 +140,11 @@ impl Strips {
         };
         let places: Vec<usize> = (0..pieces.len()).collect();
         for wave in places.chunks(STRIPS_PER_THREAD * rayon::current_num_threads()) {
-            let done: Vec<io::Result<T>> =
-                wave.par_iter().map(|place| work(strip(*place))).collect();
+            let work = |place: &usize| {
+                self.cancel.check()?;
+                work(strip(*place))
+            };
+            let done: Vec<io::Result<T>> = wave.par_iter().map(work).collect();
             done.into_iter().try_for_each(|result| take(result?))?;
         }
         self.next += pieces.len();

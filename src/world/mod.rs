@@ -3,11 +3,17 @@
 mod again;
 mod disk;
 mod memory;
+mod notices;
+mod stamp;
 mod sweep;
+mod traced;
 mod unfinished;
 
 pub use disk::Disk;
 pub use memory::Memory;
+pub use notices::{Heard, Notices, NoticesError, Wake};
+pub use stamp::Stamp;
+pub use traced::{Doubt, Trace, Traced};
 pub use unfinished::abandon_unfinished;
 
 use std::io::{self, Read, Seek, Write};
@@ -91,6 +97,22 @@ pub trait World: Send + Sync {
     /// As [`World::list`].
     fn remove(&self, _path: &Path) -> io::Result<()> {
         Err(io::ErrorKind::Unsupported.into())
+    }
+
+    /// The state of a file, which is another one after almost every change.
+    ///
+    /// # Errors
+    /// As [`World::list`].
+    fn stamp(&self, _path: &Path) -> io::Result<Stamp> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    /// Starts to listen for changes; `wake` hears of them.
+    ///
+    /// # Errors
+    /// Why there are no notices: then one has to look again and again.
+    fn notices(&self, _wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
+        Err(NoticesError::new("this kind of file system sends none"))
     }
 }
 

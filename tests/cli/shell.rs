@@ -2,11 +2,12 @@
 
 use super::*;
 
-const COMMANDS: [&str; 8] = [
+const COMMANDS: [&str; 9] = [
     "render",
     "check",
     "why",
     "sample",
+    "watch",
     "nodes",
     "cache",
     "completions",

@@ -136,6 +136,7 @@ fn context() -> RunContext<'static> {
         level: Level::new(),
         cache: None,
         filtering: true,
+        cancel: None,
     }
 }
 

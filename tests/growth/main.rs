@@ -52,6 +52,7 @@ fn grow(model: &GrowthModel, samples: &Samples<'_>, level: Level) -> Grown {
             level,
             cache: None,
             filtering: true,
+            cancel: None,
         },
     );
     let column = |column| program.output(&scratch, 0, column)[..samples.len()].to_vec();

@@ -20,6 +20,7 @@ fn build(kind: &'static Kind, inputs: Vec<(&str, Value)>) -> Result<Vec<Value>, 
         &Build {
             node: &node,
             seed: 0,
+            cancel: None,
         },
     )
 }
@@ -165,6 +166,7 @@ fn the_fields_are_solid_and_share_one_kernel() {
         level: fearless_simd::Level::new(),
         cache: None,
         filtering: true,
+        cancel: None,
     };
     program.run(&Samples::Points(&points), &mut scratch, &context);
     let model = GrowthModel::new(&skeleton, settings(2.0)).unwrap();

@@ -57,6 +57,7 @@ fn painted(field: &Field, side: f64, count: usize) -> Vec<Vec<f32>> {
         level: levels::levels()[0],
         cache: None,
         filtering: true,
+        cancel: None,
     };
     let mut scratch = Scratch::default();
     program.run(&samples, &mut scratch, &context);

@@ -56,6 +56,7 @@ fn context(filtering: bool) -> RunContext<'static> {
         level: Level::new(),
         cache: None,
         filtering,
+        cancel: None,
     }
 }
 

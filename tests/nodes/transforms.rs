@@ -96,6 +96,7 @@ fn built(kind: &str, inputs: &[(&str, Value)]) -> Arc<Material> {
     let build = Build {
         node: &Arc::from("test"),
         seed: 0,
+        cancel: None,
     };
     match (kind.build)(&Inputs::new(kind, &values), &build)
         .unwrap()

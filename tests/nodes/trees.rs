@@ -26,6 +26,7 @@ fn read(tree: impl Into<Vec<u8>>, unit: Option<&'static str>) -> Result<Arc<Skel
     let build = Build {
         node: &Arc::from("test"),
         seed: 0,
+        cancel: None,
     };
     match (KIND.build)(&Inputs::new(&KIND, &values), &build)?.remove(0) {
         Value::Skeleton(skeleton) => Ok(skeleton),

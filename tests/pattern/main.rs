@@ -33,6 +33,7 @@ fn build(kind: &str, inputs: &[(&str, Value)]) -> Result<Vec<Value>, Failure> {
         &Build {
             node: &Arc::from("test"),
             seed: 0,
+            cancel: None,
         },
     )
 }
@@ -62,6 +63,7 @@ fn columns_with(level: Level, fields: &[Field], samples: &Samples<'_>) -> Vec<Ve
         level,
         cache: None,
         filtering: true,
+        cancel: None,
     };
     let program = Program::compile(fields);
     let mut scratch = Scratch::default();

@@ -113,7 +113,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         origin: inputs.pair("origin"),
         wrap: Wrap::from_name(inputs.choice("wrap")),
         interpolation: Interpolation::from_name(inputs.choice("interpolation")),
-        pyramid: Pyramid::new(base),
+        pyramid: Pyramid::new(base, build)?,
     };
     let kernel = Picture {
         key: key(inputs, &sampler),

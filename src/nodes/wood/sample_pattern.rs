@@ -112,7 +112,7 @@ pub static KIND: Kind = Kind {
 /// Most colours that a table can have.
 const MAX_TEXELS: usize = 65_536;
 
-fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
+fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let bar = inputs.choice("spans") == "bar";
     let even = inputs.toggle("even_years");
     let rings = inputs
@@ -126,7 +126,7 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let photograph = Photograph::decode(&inputs.file("file").bytes)?;
     let band = Band::read(inputs, &photograph)?;
     let starts = match rings {
-        Some(rings) => band.rings(&photograph, rings)?,
+        Some(rings) => band.rings(&photograph, rings, build)?,
         // A year and a half has two rings, not one and a half.
         None => equal_starts(years.round().max(1.0) as usize),
     };
@@ -138,7 +138,7 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         let at = texel as f64 / texels as f64;
         if even { stretched(&starts, at) } else { at }
     };
-    let colours = band.colours(&photograph, texels, border)?;
+    let colours = band.colours(&photograph, texels, border, build)?;
     let pattern = ColourPattern {
         colours: colours
             .into_iter()

@@ -85,10 +85,10 @@ pub static KIND: Kind = Kind {
     build,
 };
 
-fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
+fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let given = |name: &str| inputs.get(name).is_some();
     if given("tree") {
-        return from_tree(inputs);
+        return from_tree(inputs, build);
     }
     if given("unit") {
         let failure = Failure::of_input("unit", "`unit` is for a `tree`, and piths are in mm");
@@ -128,7 +128,7 @@ fn every(inputs: &Inputs<'_>) -> usize {
     usize::try_from(inputs.whole("every")).unwrap_or(1).max(1)
 }
 
-fn from_tree(inputs: &Inputs<'_>) -> Result<Vec<Value>, Failure> {
+fn from_tree(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     for log in ["pith", "knots"] {
         if inputs.get(log).is_some() {
             let message = format!("`{log}` is set, but the skeleton comes from `tree`");
@@ -138,8 +138,9 @@ fn from_tree(inputs: &Inputs<'_>) -> Result<Vec<Value>, Failure> {
     let unit = inputs.get("unit").map(|_| inputs.choice("unit"));
     let unit = unit.and_then(LengthUnit::from_name);
     let bytes = &inputs.file("tree").bytes;
-    let (skeleton, warnings) = tree_file::skeleton(bytes, unit, tangents(inputs), every(inputs))
-        .map_err(|fault| Failure {
+    let (tangents, every) = (tangents(inputs), every(inputs));
+    let (skeleton, warnings) =
+        tree_file::skeleton(bytes, unit, tangents, every, build).map_err(|fault| Failure {
             message: fault.message,
             input: Some("tree"),
             item: None,

@@ -20,6 +20,7 @@ mod segments;
 pub(super) use cells::{Fault, LengthUnit};
 
 use crate::geometry::spline::TrunkCurve;
+use crate::node::Build;
 use crate::value::{Branch, Skeleton, Tangents, Thickness};
 use glam::DVec3;
 use segments::Segment;
@@ -30,14 +31,15 @@ const LEAST_RISE: f64 = 1.0;
 /// The skeleton of a measured tree, and what was left out of it.
 ///
 /// # Errors
-/// Everything that the file has wrong, by line and column.
+/// Everything that the file has wrong, by line and column, or that the run was cancelled.
 pub(super) fn skeleton(
     bytes: &[u8],
     unit: Option<LengthUnit>,
     tangents: Tangents,
     every: usize,
+    build: &Build<'_>,
 ) -> Result<(Skeleton, Vec<String>), Fault> {
-    let table = cells::read(bytes)?;
+    let table = cells::read(bytes, build)?;
     let segments = segments::read(&table, table.millimetres(unit)?)?;
     let next_of = continuations(&segments);
     let chain = trunk_chain(&segments, &next_of);
@@ -45,7 +47,7 @@ pub(super) fn skeleton(
     let trunk = rising(&segments, &chain, every, &mut warnings);
     let curve = TrunkCurve::through(&trunk, tangents)
         .map_err(|error| Fault::whole(format!("the trunk: {error}")))?;
-    let branches = branches(&segments, &next_of, &chain, &curve, &mut warnings);
+    let branches = branches(&segments, &next_of, &chain, &curve, &mut warnings, build)?;
     let skeleton = Skeleton {
         trunk,
         tangents,
@@ -121,7 +123,8 @@ fn branches(
     chain: &[usize],
     curve: &TrunkCurve,
     warnings: &mut Vec<String>,
-) -> Vec<Branch> {
+    build: &Build<'_>,
+) -> Result<Vec<Branch>, Fault> {
     let mut on_trunk = vec![false; segments.len()];
     chain.iter().for_each(|index| on_trunk[*index] = true);
     let (mut branches, mut beyond, mut thin, mut twigs) = (vec![], vec![], vec![], vec![]);
@@ -131,6 +134,7 @@ fn branches(
         .enumerate()
         .filter(|(index, _)| !on_trunk[*index])
     {
+        cells::go_on(build)?;
         if let Some(parent) = segment.parent.filter(|parent| !on_trunk[*parent]) {
             // What goes on from a branch is told with it.
             if next_of[parent] != Some(index) {
@@ -166,7 +170,7 @@ fn branches(
             ));
         }
     }
-    branches
+    Ok(branches)
 }
 
 fn branch(segment: &Segment, curve: &TrunkCurve) -> Option<Branch> {

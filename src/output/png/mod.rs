@@ -4,6 +4,7 @@ mod filter;
 
 use super::strips::{Division, Strip, Strips};
 use super::{CHANNEL_NAME, KEY_NAME, MapKind, MapRequest, MapWriter, SOFTWARE, deflate};
+use crate::cancel::Cancel;
 use crate::world::PendingFile;
 use std::io::{self, Cursor};
 
@@ -27,12 +28,13 @@ impl PngWriter {
     pub(super) fn new(
         mut file: Box<dyn PendingFile>,
         request: &MapRequest,
+        cancel: &Cancel,
     ) -> io::Result<PngWriter> {
         file.write_all(&start(request))?;
         let division = Division::new(request.row_bytes(), request.pixels[1] as usize);
         Ok(PngWriter {
             file,
-            strips: Strips::new(division),
+            strips: Strips::new(division, cancel),
             pixel_bytes: request.pixel_bytes(),
             adler: 1,
         })

@@ -5,6 +5,7 @@ mod predict;
 
 use super::strips::{Division, Strip, Strips};
 use super::{MapRequest, MapWriter, deflate};
+use crate::cancel::Cancel;
 use crate::world::PendingFile;
 use directory::Directory;
 use predict::Predictor;
@@ -28,10 +29,14 @@ pub(super) struct TiffWriter {
 }
 
 impl TiffWriter {
-    pub(super) fn new(file: Box<dyn PendingFile>, request: &MapRequest) -> io::Result<TiffWriter> {
+    pub(super) fn new(
+        file: Box<dyn PendingFile>,
+        request: &MapRequest,
+        cancel: &Cancel,
+    ) -> io::Result<TiffWriter> {
         let division = Division::new(request.row_bytes(), request.pixels[1] as usize);
         let directory = Directory::new(request, division);
-        TiffWriter::start(file, request, division, directory)
+        TiffWriter::start(file, request, division, directory, cancel)
     }
 
     fn start(
@@ -39,12 +44,13 @@ impl TiffWriter {
         request: &MapRequest,
         division: Division,
         directory: Directory,
+        cancel: &Cancel,
     ) -> io::Result<TiffWriter> {
         let head = directory.bytes();
         file.write_all(&head)?;
         Ok(TiffWriter {
             file,
-            strips: Strips::new(division),
+            strips: Strips::new(division, cancel),
             predictor: Predictor::new(request),
             directory,
             position: head.len() as u64,
@@ -115,7 +121,8 @@ mod tests {
         let directory = Directory::with_offsets(&request, division, true);
         let files = Memory::default();
         let file = files.create("bark".as_ref()).unwrap();
-        let mut writer = TiffWriter::start(file, &request, division, directory).unwrap();
+        let mut writer =
+            TiffWriter::start(file, &request, division, directory, &Cancel::new()).unwrap();
         let rows: Vec<u8> = (0..900u32 * 300).map(|at| (at / 7) as u8).collect();
         writer.write_rows(&rows).unwrap();
         Box::new(writer).finish().unwrap();

@@ -1,6 +1,7 @@
 //! A picture and its reduced copies, each half as large as the one before (Williams 1983).
 
 use super::window::Window;
+use crate::node::{Build, Failure};
 
 /// The pixels of a picture as they were decoded.
 #[derive(Debug)]
@@ -83,15 +84,19 @@ struct Reduced {
 
 impl Pyramid {
     /// Reduces a picture until one pixel is left.
-    pub(super) fn new(base: Base) -> Pyramid {
+    ///
+    /// # Errors
+    /// If the run was cancelled.
+    pub(super) fn new(base: Base, build: &Build<'_>) -> Result<Pyramid, Failure> {
         let mut pyramid = Pyramid {
             base,
             reduced: vec![],
         };
         while pyramid.size(pyramid.levels() - 1) != [1, 1] {
-            pyramid.reduced.push(pyramid.halved());
+            let halved = pyramid.halved(build)?;
+            pyramid.reduced.push(halved);
         }
-        pyramid
+        Ok(pyramid)
     }
 
     /// Number of copies, the picture itself among them.
@@ -128,13 +133,14 @@ impl Pyramid {
     }
 
     /// The last copy with half as many pixels on each side: exact means over the areas that theirs have in it.
-    fn halved(&self) -> Reduced {
+    fn halved(&self, build: &Build<'_>) -> Result<Reduced, Failure> {
         let last = self.levels() - 1;
         let from = self.size(last);
         let size = from.map(|side| side.div_ceil(2));
         let [columns, rows] = [0, 1].map(|axis| shares(from[axis], size[axis]));
         let mut texels = Vec::with_capacity(size[0] * size[1]);
         for row in &rows {
+            build.go_on()?;
             for column in &columns {
                 let mut sum = [0.0f64; 4];
                 for (y, tall) in row {
@@ -148,7 +154,7 @@ impl Pyramid {
                 texels.push(sum.map(|part| part as f32));
             }
         }
-        Reduced { size, texels }
+        Ok(Reduced { size, texels })
     }
 }
 

@@ -84,7 +84,11 @@ impl Noise {
 
 fn build(kind: &'static Kind, values: &[Option<Value>], seed: u64) -> Result<Vec<Value>, Failure> {
     let node: Arc<str> = Arc::from("node");
-    let context = Build { node: &node, seed };
+    let context = Build {
+        node: &node,
+        seed,
+        cancel: None,
+    };
     (kind.build)(&Inputs::new(kind, values), &context)
 }
 
@@ -95,6 +99,7 @@ fn run(field: &Field, samples: &Samples<'_>, level: Level) -> Vec<Vec<f32>> {
         level,
         cache: None,
         filtering: true,
+        cancel: None,
     };
     program.run(samples, &mut scratch, &context);
     let columns = program.columns(&scratch, 0);

@@ -2,7 +2,7 @@
 
 use super::photograph::{Photograph, Point};
 use super::{MAX_TEXELS, rings};
-use crate::node::{Failure, Inputs};
+use crate::node::{Build, Failure, Inputs};
 
 /// The line through the photograph, with its width.
 pub(super) struct Band {
@@ -85,11 +85,12 @@ impl Band {
         photograph: &Photograph,
         texels: usize,
         border: impl Fn(usize) -> f64,
+        build: &Build<'_>,
     ) -> Result<Vec<[f64; 3]>, Failure> {
         let colour = |texel: usize| {
             let [start, end] = [texel, texel + 1].map(|texel| border(texel) * self.length);
             let corners = self.corners(start, end);
-            photograph.sum(corners).mean().ok_or_else(|| {
+            photograph.sum(corners, build)?.mean().ok_or_else(|| {
                 let [x, y] = corners[0].map(f64::round);
                 Failure::of_input(
                     "file",
@@ -101,9 +102,15 @@ impl Band {
     }
 
     /// Where rings start, from 0 to 1 along the line.
-    pub(super) fn rings(&self, photograph: &Photograph, rings: usize) -> Result<Vec<f64>, Failure> {
+    pub(super) fn rings(
+        &self,
+        photograph: &Photograph,
+        rings: usize,
+        build: &Build<'_>,
+    ) -> Result<Vec<f64>, Failure> {
         let pixels = self.texels(None);
-        let profile = self.colours(photograph, pixels, |texel| texel as f64 / pixels as f64)?;
+        let border = |texel: usize| texel as f64 / pixels as f64;
+        let profile = self.colours(photograph, pixels, border, build)?;
         let starts = rings::starts(&profile, rings).map_err(|found| {
             let message =
                 format!("expected {rings} rings along the line, found {found} by their edges");

@@ -1,7 +1,7 @@
 //! Photographs: files decoded within limits, read as exact means over areas in linear light.
 
 use crate::colour;
-use crate::node::Failure;
+use crate::node::{Build, Failure};
 use crate::nodes::picture::{self, Format};
 use image::{DynamicImage, Rgba};
 
@@ -65,28 +65,33 @@ impl Photograph {
     }
 
     /// The sum over a convex polygon.
-    pub(super) fn sum(&self, corners: [Point; 4]) -> Sum {
+    ///
+    /// # Errors
+    /// If the run was cancelled.
+    pub(super) fn sum(&self, corners: [Point; 4], build: &Build<'_>) -> Result<Sum, Failure> {
         let [width, height] = self.size();
         let area = Polygon::new(&corners);
         let mut sum = Sum::default();
         if let Some([low, high]) = area.upright() {
             for y in area.cells(1, height) {
+                build.go_on()?;
                 let tall = high[1].min(y + 1.0) - low[1].max(y);
                 for x in area.cells(0, width) {
                     let wide = high[0].min(x + 1.0) - low[0].max(x);
                     self.add(&mut sum, x, y, wide * tall);
                 }
             }
-            return sum;
+            return Ok(sum);
         }
         for y in area.cells(1, height) {
+            build.go_on()?;
             let row = area.clip(1, y, 1.0).clip(1, y + 1.0, -1.0);
             for x in row.cells(0, width) {
                 let cell = row.clip(0, x, 1.0).clip(0, x + 1.0, -1.0);
                 self.add(&mut sum, x, y, cell.area([x, y]));
             }
         }
-        sum
+        Ok(sum)
     }
 
     fn add(&self, sum: &mut Sum, x: f64, y: f64, area: f64) {

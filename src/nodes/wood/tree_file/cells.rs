@@ -1,5 +1,6 @@
 //! The cells of a CSV file of measurements, each with its place.
 
+use crate::node::Build;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::collections::HashMap;
 
@@ -33,6 +34,15 @@ impl Fault {
         self.hint = Some(hint.into());
         self
     }
+}
+
+/// For loops over many lines.
+///
+/// # Errors
+/// If the run was cancelled.
+pub(super) fn go_on(build: &Build<'_>) -> Result<(), Fault> {
+    let unless_cancelled = build.go_on();
+    unless_cancelled.map_err(|failure| Fault::whole(failure.message))
 }
 
 /// The unit of the lengths in a file.
@@ -80,20 +90,21 @@ pub(super) struct Row {
 
 /// A file with named columns.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct Table<'a> {
     columns: HashMap<String, usize>,
     header: Vec<String>,
     /// The rows in the order of the file, at least one.
     pub(super) rows: Vec<Row>,
     decimal_comma: bool,
     unit: Option<LengthUnit>,
+    build: &'a Build<'a>,
 }
 
 /// Reads a CSV file: UTF-8 with or without a mark, columns divided by comma, semicolon or tab, any line ends.
 ///
 /// # Errors
 /// What is no text, and rows that do not fit the header.
-pub(super) fn read(bytes: &[u8]) -> Result<Table, Fault> {
+pub(super) fn read<'a>(bytes: &[u8], build: &'a Build<'a>) -> Result<Table<'a>, Fault> {
     let text = text(bytes)?;
     let (unit, header_line) = remarks(text)?;
     let separator = separator(header_line);
@@ -119,6 +130,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Table, Fault> {
         rows: vec![],
         decimal_comma: separator != b',',
         unit,
+        build,
     };
     for record in records {
         let cells = record.map_err(|error| Fault::whole(error.to_string()))?;
@@ -191,8 +203,9 @@ fn columns(header: &[String]) -> Result<HashMap<String, usize>, Fault> {
     Ok(columns)
 }
 
-impl Table {
+impl Table<'_> {
     fn add(&mut self, row: Row) -> Result<(), Fault> {
+        go_on(self.build)?;
         if self.rows.len() == MOST_ROWS {
             let message = format!("more than {MOST_ROWS} rows");
             return Err(Fault::whole(message).hint("leave out the finest branches"));
@@ -258,6 +271,7 @@ impl Table {
 
     /// A finite number.
     pub(super) fn number(&self, row: &Row, column: &str) -> Result<f64, Fault> {
+        go_on(self.build)?;
         let cell = self.cell(row, column);
         let number = match self.decimal_comma && !cell.contains('.') {
             true => cell.replacen(',', ".", 1).parse::<f64>(),

@@ -31,7 +31,7 @@ const CYLINDERS: [&str; 9] = [
 ///
 /// # Errors
 /// Missing columns, cells that are no numbers, parents that are not there or lead round in a circle, several roots.
-pub(super) fn read(table: &Table, scale: f64) -> Result<Vec<Segment>, Fault> {
+pub(super) fn read(table: &Table<'_>, scale: f64) -> Result<Vec<Segment>, Fault> {
     let lacks = |columns: &[&'static str]| -> Vec<&'static str> {
         columns
             .iter()
@@ -66,12 +66,12 @@ pub(super) fn read(table: &Table, scale: f64) -> Result<Vec<Segment>, Fault> {
     Ok(segments)
 }
 
-fn vector(table: &Table, row: &Row, columns: [&str; 3]) -> Result<DVec3, Fault> {
+fn vector(table: &Table<'_>, row: &Row, columns: [&str; 3]) -> Result<DVec3, Fault> {
     let [x, y, z] = columns.map(|column| table.number(row, column));
     Ok(DVec3::new(x?, y?, z?))
 }
 
-fn radius(table: &Table, row: &Row) -> Result<f64, Fault> {
+fn radius(table: &Table<'_>, row: &Row) -> Result<f64, Fault> {
     let radius = table.number(row, "radius")?;
     match radius >= 0.0 {
         true => Ok(radius),
@@ -80,7 +80,7 @@ fn radius(table: &Table, row: &Row) -> Result<f64, Fault> {
 }
 
 /// One segment for each node but the root, from its parent to it.
-fn from_nodes(table: &Table, scale: f64) -> Result<Vec<Segment>, Fault> {
+fn from_nodes(table: &Table<'_>, scale: f64) -> Result<Vec<Segment>, Fault> {
     let mut index_of = HashMap::new();
     for (index, row) in table.rows.iter().enumerate() {
         if index_of.insert(table.whole(row, "id")?, index).is_some() {
@@ -122,7 +122,7 @@ fn from_nodes(table: &Table, scale: f64) -> Result<Vec<Segment>, Fault> {
     }
 }
 
-fn from_cylinders(table: &Table, scale: f64) -> Result<Vec<Segment>, Fault> {
+fn from_cylinders(table: &Table<'_>, scale: f64) -> Result<Vec<Segment>, Fault> {
     let count = table.rows.len();
     let link = |row: &Row, column: &str| match table.whole(row, column)? {
         0 => Ok(None),
@@ -165,7 +165,7 @@ fn from_cylinders(table: &Table, scale: f64) -> Result<Vec<Segment>, Fault> {
 }
 
 /// The one root, from which all can be reached.
-fn check_parents(table: &Table, parents: &[Option<usize>]) -> Result<usize, Fault> {
+fn check_parents(table: &Table<'_>, parents: &[Option<usize>]) -> Result<usize, Fault> {
     let mut roots = (0..parents.len()).filter(|index| parents[*index].is_none());
     let Some(root) = roots.next() else {
         return Err(circle(table, parents, 0));
@@ -193,7 +193,7 @@ fn check_parents(table: &Table, parents: &[Option<usize>]) -> Result<usize, Faul
 }
 
 /// Says which lines are each other's parents; `start` leads into a circle.
-fn circle(table: &Table, parents: &[Option<usize>], start: usize) -> Fault {
+fn circle(table: &Table<'_>, parents: &[Option<usize>], start: usize) -> Fault {
     let mut at = start;
     for _ in 0..parents.len() {
         at = parents[at].unwrap_or(at);

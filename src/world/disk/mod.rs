@@ -1,9 +1,12 @@
 //! The world on disk: files are replaced by a rename, so a reader sees the old one or the new one.
 
+mod notices;
+
 use super::again::Patience;
 use super::sweep;
 use super::unfinished::Unfinished;
-use super::{Listed, PendingFile, World};
+use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
+use notices::DiskNotices;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -85,6 +88,14 @@ impl World for Disk {
                 fs::remove_file(path)
             }
         })
+    }
+
+    fn stamp(&self, path: &Path) -> io::Result<Stamp> {
+        Ok(Stamp::of(&fs::metadata(path)?))
+    }
+
+    fn notices(&self, wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
+        Ok(Box::new(DiskNotices::new(wake)?))
     }
 }
 

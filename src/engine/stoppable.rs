@@ -1,0 +1,138 @@
+//! The world as a run sees it that may be cancelled: whatever is slow is done in pieces, and once the run is
+//! cancelled nothing is read, written or put in place any more.
+
+use crate::cancel::Cancel;
+use crate::world::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Bytes that are read or written between two looks at the switch: less than a millisecond's.
+const PIECE: usize = 1 << 20;
+
+/// A world that ends with a run.
+pub(super) struct Stoppable {
+    world: Arc<dyn World>,
+    cancel: Cancel,
+}
+
+impl Stoppable {
+    /// `world` until `cancel` is thrown.
+    pub(super) fn new(world: Arc<dyn World>, cancel: Cancel) -> Stoppable {
+        Stoppable { world, cancel }
+    }
+
+    fn stoppable(&self, file: Box<dyn PendingFile>) -> Box<dyn PendingFile> {
+        let cancel = self.cancel.clone();
+        Box::new(StoppableFile { file, cancel })
+    }
+}
+
+impl World for Stoppable {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let mut stream = self.open(path)?;
+        let mut bytes = vec![];
+        while stream.by_ref().take(PIECE as u64).read_to_end(&mut bytes)? > 0 {}
+        Ok(bytes)
+    }
+
+    fn open(&self, path: &Path) -> io::Result<Box<dyn Read>> {
+        self.cancel.check()?;
+        Ok(Box::new(StoppableStream {
+            stream: self.world.open(path)?,
+            cancel: self.cancel.clone(),
+        }))
+    }
+
+    fn real_path(&self, path: &Path) -> io::Result<PathBuf> {
+        self.world.real_path(path)
+    }
+
+    fn read_start(&self, path: &Path, length: usize) -> io::Result<Vec<u8>> {
+        self.cancel.check()?;
+        self.world.read_start(path, length)
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
+        self.cancel.check()?;
+        Ok(self.stoppable(self.world.create(path)?))
+    }
+
+    fn create_aside(&self, path: &Path, aside: &Path) -> io::Result<Box<dyn PendingFile>> {
+        self.cancel.check()?;
+        Ok(self.stoppable(self.world.create_aside(path, aside)?))
+    }
+
+    fn sweep(&self, folder: &Path) {
+        self.world.sweep(folder);
+    }
+
+    fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
+        self.cancel.check()?;
+        self.world.list(folder)
+    }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        self.cancel.check()?;
+        self.world.remove(path)
+    }
+
+    fn stamp(&self, path: &Path) -> io::Result<Stamp> {
+        self.world.stamp(path)
+    }
+
+    fn notices(&self, wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
+        self.world.notices(wake)
+    }
+}
+
+struct StoppableStream {
+    stream: Box<dyn Read>,
+    cancel: Cancel,
+}
+
+impl Read for StoppableStream {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.cancel.check()?;
+        let length = buffer.len().min(PIECE);
+        self.stream.read(&mut buffer[..length])
+    }
+}
+
+struct StoppableFile {
+    file: Box<dyn PendingFile>,
+    cancel: Cancel,
+}
+
+impl Write for StoppableFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.cancel.check()?;
+        self.file.write(&bytes[..bytes.len().min(PIECE)])
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.cancel.check()?;
+        self.file.flush()
+    }
+}
+
+impl Seek for StoppableFile {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
+impl PendingFile for StoppableFile {
+    fn sync(&mut self) -> io::Result<()> {
+        self.cancel.check()?;
+        self.file.sync()
+    }
+
+    fn commit(mut self: Box<Self>) -> io::Result<()> {
+        // What is slow comes before the lock, under which nothing is left to do but a rename.
+        self.flush()?;
+        let StoppableFile { file, cancel } = *self;
+        let placed = cancel.unless_cancelled(|| file.commit());
+        placed.unwrap_or_else(|| cancel.check())
+    }
+}

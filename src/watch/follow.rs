@@ -1,0 +1,340 @@
+//! The thread that decides: what has changed, what has to run, what is told.
+
+use super::mailbox::{Inbox, Mailbox};
+use super::run::{Ended, Outcome, PATIENCE, Run, Switches};
+use super::session::{Running, Session, State};
+use super::{Told, Watch};
+use crate::world::{Doubt, Notices, NoticesError};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Time between two looks at the stamps of all files, in case notices do not come.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// The same where it is known that they do not come.
+const POLL: Duration = Duration::from_millis(250);
+
+/// Time between the starts of two runs of which the first was overtaken by a change.
+const BREATH: Duration = Duration::from_millis(30);
+
+/// How long a run may take to end when the watch does.
+const FAREWELL: Duration = Duration::from_millis(300);
+
+/// How long nothing new may be seen while changes come faster than pictures.
+const UNSEEN: Duration = Duration::from_millis(500);
+
+/// Everything that the thread knows.
+pub(super) struct Follow {
+    watch: Watch,
+    sessions: Vec<Session>,
+    notices: Option<Box<dyn Notices>>,
+    /// What the notices follow.
+    followed: BTreeSet<PathBuf>,
+    /// Time between two looks.
+    interval: Duration,
+    next_look: Instant,
+    /// A change that was found without a notice of it.
+    unannounced: Option<PathBuf>,
+    runs: u64,
+    /// The run that was stopped and has not ended, and until when that is waited for.
+    stopping: Option<(u64, Instant)>,
+    /// When the next run may start.
+    breath: Instant,
+}
+
+impl Follow {
+    pub(super) fn new(watch: Watch) -> Follow {
+        let now = Instant::now();
+        let session = |followed: &Arc<_>| Session::new(Arc::clone(followed), now);
+        Follow {
+            sessions: watch.followed.iter().map(session).collect(),
+            notices: None,
+            followed: BTreeSet::new(),
+            interval: watch.options.poll.unwrap_or(LOOK),
+            next_look: now,
+            unannounced: None,
+            runs: 0,
+            stopping: None,
+            breath: now,
+            watch,
+        }
+    }
+
+    pub(super) fn run(mut self) {
+        self.listen();
+        self.follow_paths(&mut Inbox::default());
+        loop {
+            self.start_next();
+            let inbox = self.watch.mailbox.take(self.wakes_at());
+            if inbox.stop {
+                return self.stop();
+            }
+            self.attend(inbox);
+        }
+    }
+
+    fn attend(&mut self, mut inbox: Inbox) {
+        for ended in std::mem::take(&mut inbox.ended) {
+            self.conclude(ended);
+        }
+        if inbox.reads || inbox.heard() {
+            self.follow_paths(&mut inbox);
+        }
+        if inbox.heard() {
+            self.unannounced
+                .take_if(|path| inbox.all || inbox.paths.contains(path));
+            self.look(&inbox);
+        } else if Instant::now() >= self.next_look {
+            self.look_around();
+        }
+        self.tell_failures();
+    }
+
+    /// When there is something to do even if nothing is heard.
+    fn wakes_at(&self) -> Instant {
+        let is_due = self
+            .sessions
+            .iter()
+            .any(|session| matches!(session.state, State::Due));
+        let patience = self.stopping.map(|(_, until)| until);
+        let start = is_due.then(|| patience.unwrap_or(self.breath).max(self.breath));
+        let told = self.sessions.iter().filter_map(Session::tells_at);
+        told.chain(start).fold(self.next_look, Instant::min)
+    }
+
+    /// Asks for notices; without them files are looked at again and again.
+    fn listen(&mut self) {
+        if self.watch.options.poll.is_some() {
+            return;
+        }
+        let mailbox: Arc<Mailbox> = Arc::clone(&self.watch.mailbox);
+        match self
+            .watch
+            .world
+            .notices(Arc::new(move |heard| mailbox.hear(heard)))
+        {
+            Ok(notices) => self.notices = Some(notices),
+            Err(error) => self.poll(&error),
+        }
+    }
+
+    fn poll(&mut self, error: &NoticesError) {
+        self.notices = None;
+        self.interval = POLL;
+        self.next_look = Instant::now() + POLL;
+        for session in &self.sessions {
+            let told = Told::Polling {
+                reason: error.to_string(),
+                milliseconds: POLL.as_millis() as u64,
+            };
+            (self.watch.audience)(&session.followed.recipe, told);
+        }
+    }
+
+    /// Has the notices follow all paths, and adds to the inbox where something may have been missed.
+    fn follow_paths(&mut self, inbox: &mut Inbox) {
+        let Some(notices) = &mut self.notices else {
+            return;
+        };
+        let paths: BTreeSet<PathBuf> = self.sessions.iter().flat_map(Session::paths).collect();
+        if paths == self.followed && !inbox.heard() {
+            return;
+        }
+        match notices.follow(&paths) {
+            Ok(is_new) => {
+                inbox.all |= is_new;
+                inbox
+                    .paths
+                    .extend(paths.difference(&self.followed).cloned());
+                self.followed = paths;
+            }
+            Err(error) => {
+                inbox.all = true;
+                self.poll(&error);
+            }
+        }
+    }
+
+    /// Looks at what was heard of.
+    fn look(&mut self, inbox: &Inbox) -> Option<PathBuf> {
+        let now = Instant::now();
+        for session in &mut self.sessions {
+            if inbox.all || session.reads_any(&inbox.paths) {
+                session.stirred = now;
+            }
+        }
+        let doubt = if inbox.all {
+            Doubt::All
+        } else {
+            Doubt::About(&inbox.paths)
+        };
+        self.find_changes(doubt)
+    }
+
+    /// Looks at the stamps of everything.
+    fn look_around(&mut self) {
+        self.next_look = Instant::now() + self.interval;
+        // Follows them anew even if nothing was heard: a folder may have gone without notice.
+        self.followed.clear();
+        let mut inbox = Inbox::default();
+        self.follow_paths(&mut inbox);
+        inbox.paths.clear();
+        let found = self.look(&inbox);
+        if self.notices.is_none() {
+            return;
+        }
+        if let Some(path) = self.unannounced.take() {
+            let reason = format!("that of `{}` did not come", path.display());
+            self.poll(&NoticesError::new(reason));
+        } else {
+            self.unannounced = found;
+        }
+    }
+
+    /// Makes what has changed due, and stops what it is out of date for; gives a path that changed.
+    fn find_changes(&mut self, doubt: Doubt<'_>) -> Option<PathBuf> {
+        let world = Arc::clone(&self.watch.world);
+        let mut found = None;
+        for index in 0..self.sessions.len() {
+            if matches!(self.sessions[index].state, State::Due) {
+                continue;
+            }
+            if let Some(path) = self.sessions[index].changed_path(&*world, doubt) {
+                found = Some(path);
+                self.supersede(index);
+            }
+        }
+        found
+    }
+
+    /// The recipe has changed: it runs next, and whatever runs now makes way for it.
+    fn supersede(&mut self, index: usize) {
+        let now = Instant::now();
+        self.sessions[index].changed = now;
+        self.sessions[index].stirred = now;
+        for other in 0..self.sessions.len() {
+            let session = &mut self.sessions[other];
+            let State::Running(running) = &session.state else {
+                continue;
+            };
+            let is_unseen = session.shown.is_none_or(|shown| now > shown + UNSEEN);
+            let patience = if other == index && is_unseen {
+                running.switches.stop_after_preview()
+            } else {
+                running.switches.stop();
+                PATIENCE
+            };
+            self.stopping = Some((running.number, now + patience));
+            session.state = State::Due;
+        }
+        self.sessions[index].state = State::Due;
+    }
+
+    /// Starts the recipe that changed last, if nothing else runs.
+    fn start_next(&mut self) {
+        let now = Instant::now();
+        let is_busy = self
+            .sessions
+            .iter()
+            .any(|it| matches!(it.state, State::Running(_)));
+        let is_stopping = self.stopping.is_some_and(|(_, until)| now < until);
+        if is_busy || is_stopping || now < self.breath {
+            return;
+        }
+        if self.stopping.take().is_some() {
+            // It is in a call that cannot be stopped: what it still gives is dropped.
+            if let Ok(engine) = self.watch.engine.beside() {
+                self.watch.engine = Arc::new(engine);
+            }
+        }
+        let due = self.sessions.iter_mut().rev();
+        let due = due.filter(|session| matches!(session.state, State::Due));
+        // Of those that changed at the same time the first: all of them, at the start.
+        let Some(session) = due.max_by_key(|session| session.changed) else {
+            return;
+        };
+        self.runs += 1;
+        let switches = Switches::default();
+        let running = Running {
+            number: self.runs,
+            switches: switches.clone(),
+        };
+        let run = Run {
+            number: self.runs,
+            followed: Arc::clone(&session.followed),
+            engine: Arc::clone(&self.watch.engine),
+            world: Arc::clone(&self.watch.world),
+            audience: Arc::clone(&self.watch.audience),
+            mailbox: Arc::clone(&self.watch.mailbox),
+            trace: session.begin(running),
+            switches,
+            preview: self.watch.options.preview,
+            noticed: session.changed,
+        };
+        if run.start().is_err() {
+            // The system has no more threads now: it may have some later.
+            session.end(State::Due);
+            self.breath = now + LOOK;
+        }
+    }
+
+    fn conclude(&mut self, ended: Ended) {
+        let now = Instant::now();
+        if self
+            .stopping
+            .is_some_and(|(number, _)| number == ended.number)
+        {
+            self.stopping = None;
+            self.breath = now + BREATH;
+        }
+        let Some(session) = self
+            .sessions
+            .iter_mut()
+            .find(|it| it.newest == ended.number)
+        else {
+            return;
+        };
+        if ended.shown {
+            session.shown = Some(now);
+        }
+        if !session.is_running() {
+            // Overtaken by a change.
+            return;
+        }
+        match ended.outcome {
+            Outcome::Rendered(rendered) => {
+                session.end(State::Settled);
+                (self.watch.audience)(&session.followed.recipe, Told::Rendered(rendered));
+            }
+            Outcome::Failed(failed) => session.end(State::Failing(failed)),
+            Outcome::Stopped => session.state = State::Due,
+        }
+    }
+
+    fn tell_failures(&mut self) {
+        let now = Instant::now();
+        for session in &mut self.sessions {
+            for told in session.failed(now).into_iter().flatten() {
+                (self.watch.audience)(&session.followed.recipe, told);
+            }
+        }
+    }
+
+    /// Stops what runs, and waits a moment for it to leave everything in order.
+    fn stop(self) {
+        let end = Instant::now() + FAREWELL;
+        let mut going = self.stopping.map(|(number, _)| number);
+        for session in &self.sessions {
+            if let State::Running(running) = &session.state {
+                running.switches.stop();
+                going = Some(running.number);
+            }
+        }
+        while going.is_some() && Instant::now() < end {
+            let ended = self.watch.mailbox.take(end).ended;
+            going = going.filter(|number| ended.iter().all(|it| it.number != *number));
+        }
+    }
+}
