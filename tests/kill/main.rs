@@ -5,8 +5,10 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
-mod programs;
+mod place;
 mod readers;
+mod renders;
+mod watches;
 
 /// A number from the environment, or the usual one.
 fn number(name: &str, usual: u64) -> u64 {
