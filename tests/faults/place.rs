@@ -157,6 +157,11 @@ impl Place {
         copy(&self.work(), &self.home.path().join("template"));
     }
 
+    /// The folder that holds that of the recipe, and `template`, which is what that was before a run.
+    pub(crate) fn home(&self) -> &Path {
+        self.home.path()
+    }
+
     /// The folder of the recipe.
     pub(crate) fn work(&self) -> PathBuf {
         self.home.path().join("work")
