@@ -1,6 +1,7 @@
 //! Programs that are killed, and readers that look meanwhile: nobody ever sees a torn file.
 //!
-//! The short tests kill a few dozen times. 2,000 kills and 100,000 replaced maps:
+//! The short tests kill a few dozen times. 2,000 kills of renders, 500 of watches, 500 signals and 100,000
+//! replaced maps:
 //! `cargo test --release --test kill -- --ignored --nocapture`.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
@@ -8,6 +9,7 @@
 mod place;
 mod readers;
 mod renders;
+mod signals;
 mod watches;
 
 /// A number from the environment, or the usual one.

@@ -122,7 +122,8 @@ impl Place {
             .collect()
     }
 
-    fn unfinished(&self, folder: &str) -> usize {
+    /// How many unfinished files are in a folder and in those below.
+    pub(crate) fn unfinished(&self, folder: &str) -> usize {
         let files = files(&self.path(folder));
         files.iter().filter(|path| is_unfinished(path)).count()
     }
@@ -143,9 +144,14 @@ impl Place {
         tally.late += u64::from(is_late);
         tally.in_outputs += u64::from(self.unfinished("out") > 0);
         tally.in_store += u64::from(self.unfinished("store") > 0);
-        let after = self.finished();
+        tally.between += u64::from(self.look(before, variants));
+        is_late
+    }
+
+    /// That every map is one of `before` or one of `variants`; whether there are some of both.
+    pub(crate) fn look(&self, before: &Maps, variants: &[usize]) -> bool {
         let mut is_old = vec![];
-        for (name, bytes) in &after {
+        for (name, bytes) in &self.finished() {
             if name.ends_with(".preview.png") {
                 assert_whole(name, bytes);
                 continue;
@@ -153,20 +159,18 @@ impl Place {
             let is_new = |variant: &usize| self.right[*variant][name] == *bytes;
             is_old.push(before[name] == *bytes);
             let is_whole = before[name] == *bytes || variants.iter().any(is_new);
-            assert!(is_whole, "{name} is torn after {tally:?}");
+            assert!(is_whole, "{name} is torn");
         }
-        assert_eq!(is_old.len(), before.len(), "a map is gone after {tally:?}");
-        tally.between += u64::from(is_old.contains(&true) && is_old.contains(&false));
-        is_late
+        assert_eq!(is_old.len(), before.len(), "a map is gone");
+        is_old.contains(&true) && is_old.contains(&false)
     }
 
     /// The next start: the right maps from the store that the kill has left, and nothing unfinished.
-    pub(crate) fn start_again(&self, variant: usize, tally: &Tally) {
+    pub(crate) fn start_again(&self, variant: usize) {
         assert!(self.render(variant).status().unwrap().success());
-        let is_right = self.maps() == self.right[variant];
-        assert!(is_right, "a wrong hit after {tally:?}");
+        assert!(self.maps() == self.right[variant], "a wrong hit");
         let left = self.unfinished("out") + self.unfinished("store");
-        assert_eq!(left, 0, "unfinished files after {tally:?}");
+        assert_eq!(left, 0, "unfinished files");
     }
 }
 

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 /// How much a run finds in the store.
 #[derive(Clone, Copy, Debug)]
-enum Work {
+pub(super) enum Work {
     /// Nothing: it paints, writes maps and fills the store.
     All,
     /// All: it copies maps into place.
@@ -17,7 +17,7 @@ enum Work {
 
 impl Work {
     /// Makes the store what the work needs.
-    fn prepare(self, place: &Place, variant: usize) {
+    pub(super) fn prepare(self, place: &Place, variant: usize) {
         match self {
             Work::All => {
                 // There may be none yet.
@@ -31,7 +31,7 @@ impl Work {
     }
 
     /// How long a run takes that is not killed: the median of five.
-    fn time(self, place: &Place) -> Duration {
+    pub(super) fn time(self, place: &Place) -> Duration {
         let mut times = [0, 1, 2, 3, 0].map(|variant| {
             self.prepare(place, variant);
             let start = Instant::now();
@@ -61,7 +61,7 @@ fn campaign(kills: u64) -> Tally {
         *time = time.mul_f64(if is_late { 0.96 } else { 1.01 });
         // The same maps, or others that share structures with them.
         let next = [variant, dice.throw(VARIANTS.len() as u64) as usize];
-        place.start_again(next[dice.throw(2) as usize], &tally);
+        place.start_again(next[dice.throw(2) as usize]);
     }
     println!("renders, seed {seed}: {tally:?}, 0 torn maps, 0 wrong hits, 0 left over");
     tally

@@ -35,7 +35,7 @@ fn campaign(kills: u64) -> Tally {
         let is_late = place.kill(child, &before, &all, &mut tally);
         assert!(!is_late, "the watch has ended by itself");
         let last = variants.last().copied().unwrap_or_default();
-        place.start_again(last, &tally);
+        place.start_again(last);
     }
     println!("watches, seed {seed}: {tally:?}, 0 torn maps, 0 wrong hits, 0 left over");
     tally
