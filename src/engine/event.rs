@@ -115,6 +115,8 @@ pub enum Event {
         output: String,
         /// How long it took.
         milliseconds: f64,
+        /// How long its tiles took, summed over all threads; the rest is building, encoding and writing.
+        computing: f64,
     },
     /// A node says something that the recipe's author should know.
     Warning {

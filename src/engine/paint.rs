@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// Bytes of rows in a window, at most, as long as a window has a row.
 const WINDOW_BYTES: usize = 64 << 20;
@@ -147,10 +148,11 @@ impl Painter<'_> {
             if self.cancel.is_cancelled() {
                 return None;
             }
+            let start = Instant::now();
             let mut scratch = lock(scratches).pop().unwrap_or_default();
             let painted = self.paint_tile(encoders, *tile, &mut scratch)?;
             lock(scratches).push(scratch);
-            self.meter.tile();
+            self.meter.tile(start.elapsed());
             Some(painted)
         };
         window

@@ -27,6 +27,8 @@ pub(super) struct Count {
     tiles: usize,
     tiles_done: usize,
     work_of_output: f64,
+    /// Time of all threads in tiles of the output.
+    computing: Duration,
     heard: Option<Duration>,
     pace: Pace,
 }
@@ -45,9 +47,13 @@ impl<'a> Meter<'a> {
         self.count.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Counts a tile.
-    pub(super) fn tile(&self) {
-        let event = self.count().tile(self.start.elapsed());
+    /// Counts a tile that took a thread this long.
+    pub(super) fn tile(&self, took: Duration) {
+        let event = {
+            let mut count = self.count();
+            count.computing += took;
+            count.tile(self.start.elapsed())
+        };
         // Told outside the lock: a listener may take its time, or render something itself.
         event
             .into_iter()
@@ -73,6 +79,7 @@ impl Count {
         self.work -= work(found, pixels);
         self.work_done += self.work_of_output;
         self.work_of_output = work(painted, pixels);
+        self.computing = Duration::ZERO;
         output.clone_into(&mut self.output);
         self.divide(1);
     }
@@ -80,6 +87,11 @@ impl Count {
     /// Divides what is painted into tiles.
     pub(super) fn divide(&mut self, tiles: usize) {
         (self.tiles, self.tiles_done) = (tiles, 0);
+    }
+
+    /// Time of all threads in the tiles of the output that was begun last.
+    pub(super) fn computing(&self) -> Duration {
+        self.computing
     }
 
     /// Counts maps that are in their places.

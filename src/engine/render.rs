@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What to render, and who is told.
 pub struct Render<'a> {
@@ -290,10 +290,11 @@ impl Output<'_> {
             self.write_maps(maps, &target, &missing, meter)?
         };
         self.remember(&wanted, built, missing.into_iter().zip(faults));
-        let (output, milliseconds) = (self.name().to_owned(), start.elapsed().as_secs_f64() * 1e3);
+        let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
         self.request.listener.hear(Event::OutputDone {
-            output,
-            milliseconds,
+            output: self.name().to_owned(),
+            milliseconds: milliseconds(start.elapsed()),
+            computing: milliseconds(meter.count().computing()),
         });
         Ok(self.announce(&wanted))
     }

@@ -86,6 +86,8 @@ pub struct Times {
     pub preview: f64,
     /// Everything else: building, painting, writing.
     pub rendering: f64,
+    /// Computing the tiles, summed over all threads; part of the rendering.
+    pub computing: f64,
 }
 
 /// Collects what a run did from its events.
@@ -133,6 +135,9 @@ impl Collected {
                     &mut self.reused
                 };
                 nodes.insert(node.clone());
+            }
+            Event::OutputDone { computing, .. } => {
+                self.rendered.times.computing += computing;
             }
             Event::MapWritten { path, .. } => self.rendered.written.push(path.clone()),
             Event::MapRestored { path, .. } => self.rendered.restored.push(path.clone()),

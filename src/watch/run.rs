@@ -124,11 +124,18 @@ impl Run {
                 .map(|()| preview)
         });
         match rendered {
-            Ok(preview) => Outcome::Rendered(Rendered {
-                warnings: loaded.warnings,
-                times: self.times(start, loading, preview),
-                ..collector.finish()
-            }),
+            Ok(preview) => {
+                let rendered = collector.finish();
+                let computing = rendered.times.computing;
+                Outcome::Rendered(Rendered {
+                    warnings: loaded.warnings,
+                    times: Times {
+                        computing,
+                        ..self.times(start, loading, preview)
+                    },
+                    ..rendered
+                })
+            }
             Err(RunError::Cancelled) => Outcome::Stopped,
             Err(error) => Outcome::Failed(Failed::Running(error)),
         }
@@ -144,6 +151,7 @@ impl Run {
             loading: milliseconds(loading),
             preview: milliseconds(preview),
             rendering: milliseconds(rendering),
+            computing: 0.0,
         }
     }
 

@@ -104,8 +104,9 @@ fn all_events() -> Vec<(Event, Value)> {
             Event::OutputDone {
                 output,
                 milliseconds: 2.0,
+                computing: 1.5,
             },
-            json!({ "event": "output_done", "output": "board", "milliseconds": 2.0 }),
+            json!({ "event": "output_done", "output": "board", "milliseconds": 2.0, "computing": 1.5 }),
         ),
         (
             Event::Warning {

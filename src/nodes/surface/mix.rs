@@ -53,7 +53,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     ))])
 }
 
-/// What `b` can do; the arithmetic of each is in `blended`.
+/// What `b` can do; [`Mix::evaluate`] has the arithmetic of each.
 const MODES: &[&str] = &[
     "normal",
     "multiply",
@@ -67,27 +67,6 @@ const MODES: &[&str] = &[
     "darken",
     "lighten",
 ];
-
-/// One part of what the mode puts in the place of `b`.
-fn blended(mode: &str, a: f32, b: f32) -> f32 {
-    match mode {
-        "multiply" => a * b,
-        "screen" => 1.0 - (1.0 - a) * (1.0 - b),
-        "overlay" if a < 0.5 => 2.0 * a * b,
-        "overlay" => 1.0 - 2.0 * (1.0 - a) * (1.0 - b),
-        // Pegtop's formula: no kink at 1/2.
-        "soft_light" => (1.0 - 2.0 * b) * a * a + 2.0 * b * a,
-        "add" => a + b,
-        "subtract" => (a - b).max(0.0),
-        "difference" => (a - b).abs(),
-        // Nothing is lighter than white divided by itself.
-        "divide" if b <= a || b <= 0.0 => 1.0,
-        "divide" => a / b,
-        "darken" => a.min(b),
-        "lighten" => a.max(b),
-        _ => b,
-    }
-}
 
 /// Columns in: `width` of `a`, `width` of `b`, amount.
 #[derive(Debug)]
@@ -131,6 +110,33 @@ impl Kernel for Mix {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
+        match self.mode {
+            "multiply" => self.mix(block, |a, b| a * b),
+            "screen" => self.mix(block, |a, b| 1.0 - (1.0 - a) * (1.0 - b)),
+            "overlay" => self.mix(block, |a, b| {
+                if a < 0.5 {
+                    2.0 * a * b
+                } else {
+                    1.0 - 2.0 * (1.0 - a) * (1.0 - b)
+                }
+            }),
+            // Pegtop's formula: no kink at 1/2.
+            "soft_light" => self.mix(block, |a, b| (1.0 - 2.0 * b) * a * a + 2.0 * b * a),
+            "add" => self.mix(block, |a, b| a + b),
+            "subtract" => self.mix(block, |a, b| (a - b).max(0.0)),
+            "difference" => self.mix(block, |a, b| (a - b).abs()),
+            // Nothing is lighter than white divided by itself.
+            "divide" => self.mix(block, |a, b| if b <= a || b <= 0.0 { 1.0 } else { a / b }),
+            "darken" => self.mix(block, f32::min),
+            "lighten" => self.mix(block, f32::max),
+            _ => self.mix(block, |_, b| b),
+        }
+    }
+}
+
+impl Mix {
+    /// Mixes `a` with what the mode makes of one part of `a` and `b`; each mode has a loop of its own.
+    fn mix(&self, block: &mut Block<'_>, blended: impl Fn(f32, f32) -> f32) {
         let amounts = block.inputs[2 * self.width].values;
         for (part, output) in block.outputs.iter_mut().enumerate() {
             let colours = block.inputs[part]
@@ -140,7 +146,7 @@ impl Kernel for Mix {
             for ((output, (a, b)), amount) in output.iter_mut().zip(colours).zip(amounts) {
                 let amount = amount.clamp(0.0, 1.0);
                 // Exact at both ends, which a + (b - a) * amount is not.
-                *output = a * (1.0 - amount) + blended(self.mode, *a, *b) * amount;
+                *output = a * (1.0 - amount) + blended(*a, *b) * amount;
             }
         }
     }
