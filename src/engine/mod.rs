@@ -24,6 +24,7 @@ mod target;
 mod verify;
 mod wanted;
 mod why;
+mod write;
 
 pub use crate::cancel::Cancel;
 pub use event::{Event, From as ReusedFrom, Listener};

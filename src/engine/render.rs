@@ -3,18 +3,15 @@
 use super::build::Built;
 use super::event::{Event, Listener, tell_store_failed};
 use super::known::{KnownMap, KnownOutput, OutputRecord, repeat_warnings};
-use super::paint::{Painter, Sheet};
 use super::plan::Plan;
 use super::progress::Meter;
 use super::store::{Family, Store, ToldOnce};
 use super::verify::Verification;
 use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
-use crate::field::{ColumnCache, Field, Program, RunContext, Target};
 use crate::graph::{Graph, no_output};
 use crate::key::Key;
-use crate::output::{self, Encoder, Faults, MapRequest};
-use crate::value::Maps;
+use crate::output::Faults;
 use crate::world::World;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
@@ -314,80 +311,6 @@ impl Output<'_> {
             None => self.known_map(map),
         };
         known.is_some_and(|known| self.put_in_place(&known))
-    }
-
-    fn write_maps(
-        &self,
-        maps: &Maps,
-        target: &FlatPiece,
-        missing: &[&WantedMap],
-        meter: &Meter<'_>,
-    ) -> Result<Vec<Faults>, RunError> {
-        let field = |map: &&WantedMap| self.field(maps, &map.channel).0;
-        let fields: Vec<Field> = missing.iter().map(field).collect();
-        let cancel = &self.engine.cancel;
-        let program = Program::compile_until(&fields, cancel).ok_or(RunError::Cancelled)?;
-        self.check_program(&program)?;
-        let sheets: io::Result<Vec<Sheet>> = missing
-            .iter()
-            .map(|map| self.sheet(maps, target, map))
-            .collect();
-        let mut sheets = sheets.map_err(|error| RunError::not_written(&error))?;
-        let (context, columns) = (self.engine.context(), self.verified_columns());
-        let columns = columns.as_ref().map(|it| it as &dyn ColumnCache);
-        let painter = Painter {
-            output: self.name(),
-            program: &program,
-            target,
-            options: &self.engine.options,
-            context: RunContext {
-                cache: columns.or(context.cache),
-                ..context
-            },
-            listener: self.request.listener,
-            cancel,
-            meter,
-        };
-        painter.paint(&mut sheets)?;
-        let faults = sheets.iter().map(|sheet| sheet.faults).collect();
-        for (sheet, map) in sheets.into_iter().zip(missing) {
-            sheet
-                .writer
-                .finish()
-                .map_err(|error| RunError::not_written(&error))?;
-            self.request.listener.hear(Event::MapWritten {
-                output: self.name().to_owned(),
-                channel: map.channel.clone(),
-                path: self.path(map),
-                not_finite: sheet.faults.non_finite,
-                clamped: sheet.faults.clamped,
-            });
-        }
-        Ok(faults)
-    }
-
-    fn sheet(&self, maps: &Maps, target: &FlatPiece, map: &WantedMap) -> io::Result<Sheet> {
-        let (_, kind) = self.field(maps, &map.channel);
-        let request = MapRequest {
-            pixels: target.pixels(),
-            size_mm: maps.size,
-            kind,
-            format: maps.format,
-            key: map.key,
-            channel: map.channel.clone(),
-        };
-        let range = maps.ranges.get(&map.channel).copied();
-        let (world, cancel) = (&*self.engine.world, &self.engine.cancel);
-        let create = if self.engine.options.durable {
-            output::create_durable
-        } else {
-            output::create_until
-        };
-        Ok(Sheet {
-            encoder: Encoder::new(kind, maps.format, range),
-            writer: create(world, &self.path(map), &request, cancel)?,
-            faults: Faults::default(),
-        })
     }
 
     /// Tells the store what was written, and which maps the plan leads to.

@@ -4,7 +4,7 @@ mod notices;
 
 use super::again::Patience;
 use super::sweep;
-use super::unfinished::{self, Unfinished};
+use super::unfinished::Unfinished;
 use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World, are_apart};
 use notices::DiskNotices;
 use std::fs::{self, File};
@@ -36,10 +36,11 @@ impl World for Disk {
 
     fn read_start(&self, path: &Path, length: usize) -> io::Result<Vec<u8>> {
         require_regular(path)?;
-        let mut bytes = Vec::new();
-        File::open(path)?
-            .take(length as u64)
-            .read_to_end(&mut bytes)?;
+        let file = File::open(path)?;
+        let there = usize::try_from(file.metadata()?.len()).unwrap_or(length);
+        // Room for all, and for the read that finds the end.
+        let mut bytes = Vec::with_capacity(there.min(length) + 32);
+        file.take(length as u64).read_to_end(&mut bytes)?;
         Ok(bytes)
     }
 
@@ -125,7 +126,6 @@ fn start(path: PathBuf, aside: &Path) -> io::Result<Box<dyn PendingFile>> {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
         _ => {}
     }
-    unfinished::make_folder(path.parent())?;
     Ok(Box::new(Unfinished::new(path, aside)?))
 }
 
