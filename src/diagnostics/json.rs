@@ -46,7 +46,7 @@ impl<'a> UsedBy<'a> {
             line,
             column,
             node: &one.node,
-            kind: one.kind,
+            kind: &one.kind,
         }
     }
 }

@@ -48,7 +48,7 @@ pub struct Use {
     /// The node, with the nodes it lies in: `board/planks`.
     pub node: Arc<str>,
     /// The compound.
-    pub kind: &'static str,
+    pub kind: Arc<str>,
     /// Where the compound that holds the node is used; `None` in the recipe itself.
     pub outer: Option<Arc<Use>>,
 }

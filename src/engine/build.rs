@@ -4,6 +4,7 @@ use super::event::{Event, Listener};
 use super::memory::{Memory, Structure};
 use super::plan::Plan;
 use super::store::Store;
+use super::verify::Verification;
 use super::{Cancel, RunError, arithmetic, content, reuse};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::field::Field;
@@ -27,6 +28,8 @@ pub(super) struct Builder<'a> {
     pub(super) cancel: &'a Cancel,
     /// Memory for decoded files that the run has left.
     pub(super) budget: Arc<Budget>,
+    /// Compares what is made with what the caches have, if that is asked for.
+    pub(super) verification: Option<Verification>,
 }
 
 /// The built nodes of a plan.
@@ -34,6 +37,8 @@ pub(super) struct Built {
     cells: HashMap<NodeIndex, Cell>,
     /// What is wrong with the nodes that could not be built; nodes that read them are left out.
     pub(super) failures: Vec<Diagnostic>,
+    /// How many results were compared with those in the caches.
+    pub(super) compared: usize,
 }
 
 struct Cell {
@@ -49,6 +54,7 @@ impl Built {
         Built {
             cells: plan.order.iter().map(cell).collect(),
             failures: vec![],
+            compared: 0,
         }
     }
 
@@ -126,6 +132,10 @@ impl Builder<'_> {
             return Err(RunError::Cancelled);
         }
         built.failures = failures.sorted();
+        if let Some(verification) = &self.verification {
+            built.failures.extend(verification.differences());
+            built.compared = verification.compared();
+        }
         Ok(built)
     }
 
@@ -137,15 +147,16 @@ impl Builder<'_> {
         index: NodeIndex,
         scope: &rayon::Scope<'s>,
     ) {
-        let result = if self.cancel.is_cancelled() {
-            None
-        } else {
-            self.build_node(plan, built, index)
-                .unwrap_or_else(|failure| {
-                    failures.push(diagnose(plan, index, failure));
-                    None
-                })
-        };
+        if self.cancel.is_cancelled() {
+            // Nothing is asked of what was built.
+            return;
+        }
+        let result = self
+            .build_node(plan, built, index)
+            .unwrap_or_else(|failure| {
+                failures.push(diagnose(plan, index, failure));
+                None
+            });
         let stored = built.cells[&index].result.set(result);
         debug_assert!(stored.is_ok(), "a node is built once");
         for reader in plan

@@ -112,7 +112,7 @@ impl ColumnCache for Memory {
         }
     }
 
-    fn put(&self, key: Key, columns: Columns, nanoseconds: f64) {
+    fn put(&self, _: &str, key: Key, columns: Columns, nanoseconds: f64) {
         let bytes = columns.iter().map(|column| size_of_val(&column[..])).sum();
         self.put_content(key, Content::Columns(columns), bytes, nanoseconds);
     }
@@ -174,10 +174,10 @@ mod tests {
     #[test]
     fn the_cheapest_per_byte_is_dropped_first_and_the_budget_holds() {
         let memory = Memory::new(3 * 1024);
-        memory.put(key("dear"), columns(1.0), 1e6);
-        memory.put(key("cheap"), columns(2.0), 1e3);
-        memory.put(key("middle"), columns(3.0), 1e5);
-        memory.put(key("new"), columns(4.0), 1e5);
+        memory.put("node", key("dear"), columns(1.0), 1e6);
+        memory.put("node", key("cheap"), columns(2.0), 1e3);
+        memory.put("node", key("middle"), columns(3.0), 1e5);
+        memory.put("node", key("new"), columns(4.0), 1e5);
         assert!(memory.get(&key("cheap")).is_none());
         assert_eq!(
             memory.get(&key("dear")).map(|columns| columns[0][0]),
@@ -189,7 +189,7 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_not_kept() {
         let memory = Memory::new(100);
-        memory.put(key("large"), columns(1.0), 1e9);
+        memory.put("node", key("large"), columns(1.0), 1e9);
         assert!(memory.get(&key("large")).is_none());
         assert_eq!(memory.bytes(), 0);
     }

@@ -5,6 +5,8 @@ use super::event::{Event, Listener, tell_store_failed};
 use super::known::{KnownMap, KnownOutput, OutputRecord, repeat_warnings};
 use super::plan::Plan;
 use super::progress::Meter;
+use super::store::{Family, Store, ToldOnce};
+use super::verify::Verification;
 use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::graph::{Graph, no_output};
@@ -46,7 +48,7 @@ pub struct RenderedMap {
 }
 
 /// A map that an output asks for.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct WantedMap {
     pub(super) channel: String,
     pub(super) file_name: String,
@@ -73,6 +75,9 @@ impl Engine {
         request: &Render<'_>,
         inputs: &Arc<dyn World>,
     ) -> Result<Vec<RenderedMap>, RunError> {
+        let _in_use = self.store.as_ref().map(Store::begin);
+        let listener = ToldOnce::new(request.listener);
+        let request = &listener.request(request);
         let run = self.until(&request.cancel, inputs);
         self.threads
             .install(|| run.ended(run.render_outputs(request), request.listener))
@@ -128,7 +133,7 @@ impl Engine {
         }
         self.tell_stale(request, &outputs, &rendered, &names);
         let rendered = rendered.concat();
-        built.complete()?;
+        self.judge(&built, &outputs, request.listener)?;
         self.remember_run(request, &plan);
         Ok(rendered)
     }
@@ -172,6 +177,7 @@ impl Engine {
             plan,
             protected,
             index: *index,
+            verification: self.options.verify.then(Verification::default),
         };
         wanted.iter().map(output).collect()
     }
@@ -208,6 +214,8 @@ pub(super) struct Output<'a> {
     pub(super) plan: &'a Plan<'a>,
     pub(super) protected: &'a files::Protected,
     pub(super) index: NodeIndex,
+    /// Compares what is painted with what the store has, if that is asked for.
+    pub(super) verification: Option<Verification>,
 }
 
 impl Output<'_> {
@@ -298,7 +306,10 @@ impl Output<'_> {
 
     /// Whether the map is in place or can be put there; says so.
     fn found(&self, map: &WantedMap) -> bool {
-        let known = self.known_map(map);
+        let known = match self.verification {
+            Some(_) => None,
+            None => self.known_map(map),
+        };
         known.is_some_and(|known| self.put_in_place(&known))
     }
 
@@ -307,7 +318,7 @@ impl Output<'_> {
         &self,
         wanted: &[WantedMap],
         built: &Built,
-        mut written: impl Iterator<Item = (&'m WantedMap, Faults)>,
+        mut written: impl Iterator<Item = (&'m WantedMap, Faults)> + Clone,
     ) {
         let Some(store) = &self.engine.store else {
             return;
@@ -316,13 +327,14 @@ impl Output<'_> {
             maps: wanted.to_vec(),
             warnings: self.warnings(built),
         };
+        self.verify(&record, written.clone());
         let stored = written
             .try_for_each(|(map, faults)| {
                 let faults = [faults.non_finite, faults.clamped];
                 store.put_map(&map.key, &self.path(map), faults)
             })
             .and_then(|()| postcard::to_stdvec(&record).map_err(io::Error::other))
-            .and_then(|bytes| store.put("plan", &self.plan_key(), &bytes));
+            .and_then(|bytes| store.put(Family::Plan, &self.plan_key(), &bytes));
         if let Err(error) = stored {
             tell_store_failed(self.request.listener, &self.engine.cancel, &error);
         }

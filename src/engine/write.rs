@@ -5,7 +5,7 @@ use super::paint::{Painter, Sheet};
 use super::progress::Meter;
 use super::render::{Output, WantedMap};
 use super::{FlatPiece, RunError};
-use crate::field::{Field, Program, Target};
+use crate::field::{ColumnCache, Field, Program, RunContext, Target};
 use crate::output::{self, Encoder, Faults, MapRequest};
 use crate::value::Maps;
 use rayon::prelude::*;
@@ -30,12 +30,17 @@ impl Output<'_> {
             .map(|map| self.sheet(maps, target, map))
             .collect();
         let mut sheets = sheets.map_err(|error| RunError::not_written(&error))?;
+        let (context, columns) = (self.engine.context(), self.verified_columns());
+        let columns = columns.as_ref().map(|it| it as &dyn ColumnCache);
         let painter = Painter {
             output: self.name(),
             program: &program,
             target,
             options: &self.engine.options,
-            context: self.engine.context(),
+            context: RunContext {
+                cache: columns.or(context.cache),
+                ..context
+            },
             listener: self.request.listener,
             cancel,
             meter,

@@ -14,8 +14,8 @@ const PADDING: usize = 16;
 /// A kernel dearer than this many nanoseconds a sample is worth keeping columns of.
 const DEAR: f32 = 4.0;
 
-/// Samples that a dear kernel computes between two looks at the switch that cancels the run.
-const PIECE: usize = 1024;
+/// Nanoseconds of work between two looks at the switch that cancels the run, as far as kernels know them.
+const LONGEST_PIECE: f32 = 2e6;
 
 /// The columns of one kernel for one block of samples.
 pub type Columns = Arc<[Vec<f32>]>;
@@ -25,8 +25,8 @@ pub trait ColumnCache: Send + Sync {
     /// The columns stored under `key`.
     fn get(&self, key: &Key) -> Option<Columns>;
 
-    /// Stores columns that took about `nanoseconds` to compute.
-    fn put(&self, key: Key, columns: Columns, nanoseconds: f64);
+    /// Stores columns of `node` that took about `nanoseconds` to compute.
+    fn put(&self, node: &str, key: Key, columns: Columns, nanoseconds: f64);
 }
 
 /// What a run needs besides the program and the samples.
@@ -261,7 +261,7 @@ fn compute(
     }
 }
 
-/// Evaluates a kernel; a dear one in pieces, so that a cancelled run need not wait for the whole block.
+/// Evaluates a kernel; a slow one in pieces, so that a cancelled run need not wait for the whole block.
 fn evaluate(
     kernel: &dyn Kernel,
     inputs: &[InputColumn<'_>],
@@ -270,7 +270,9 @@ fn evaluate(
 ) {
     let level = context.level;
     let length = outputs.first().map_or(0, Vec::len);
-    if length <= PIECE || kernel.nanoseconds() < DEAR {
+    let longest = (LONGEST_PIECE / kernel.nanoseconds()) as usize / PADDING * PADDING;
+    let longest = longest.max(PADDING);
+    if length <= longest {
         kernel.evaluate(&mut Block {
             level,
             inputs,
@@ -279,11 +281,11 @@ fn evaluate(
         return;
     }
     let mut piece = vec![vec![]; outputs.len()];
-    for start in (0..length).step_by(PIECE) {
+    for start in (0..length).step_by(longest) {
         if context.is_cancelled() {
             return;
         }
-        let range = start..length.min(start + PIECE);
+        let range = start..length.min(start + longest);
         let inputs: Vec<_> = inputs.iter().map(|input| input.part(&range)).collect();
         piece
             .iter_mut()
@@ -325,6 +327,7 @@ fn store(scratch: &Scratch, step: &KernelStep, key: Key, context: &RunContext<'_
         .collect();
     if let Some(cache) = context.cache {
         cache.put(
+            &step.node,
             key,
             columns,
             f64::from(step.kernel.nanoseconds()) * padded as f64,

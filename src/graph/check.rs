@@ -278,7 +278,7 @@ impl Instance {
             source: Arc::clone(&self.origin.source),
             span: one.span.clone(),
             node: Arc::clone(&one.name),
-            kind: one.kind.name,
+            kind: one.kind.name.into(),
             outer: self.origin.uses.clone(),
         };
         Instance {

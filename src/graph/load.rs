@@ -6,6 +6,7 @@ use super::parameters::Parameters;
 use super::recipe::Role;
 use super::report::Report;
 use super::{Graph, Node, Origin, domains, edit, order, text};
+use crate::cancel::Cancel;
 use crate::diagnostics::{Code, Diagnostic, SourceFile};
 use crate::node::Kind;
 use crate::nodes::KINDS;
@@ -49,6 +50,26 @@ pub fn load(
     path: &Path,
     settings: &Settings,
 ) -> Result<Loaded, Vec<Diagnostic>> {
+    load_file(world, path, settings, &Cancel::new())
+}
+
+/// As [`load`]; `None` if `cancel` is thrown before the recipe is read and checked.
+pub fn load_until(
+    world: &dyn World,
+    path: &Path,
+    settings: &Settings,
+    cancel: &Cancel,
+) -> Option<Result<Loaded, Vec<Diagnostic>>> {
+    let loaded = load_file(world, path, settings, cancel);
+    (!cancel.is_cancelled()).then_some(loaded)
+}
+
+fn load_file(
+    world: &dyn World,
+    path: &Path,
+    settings: &Settings,
+    cancel: &Cancel,
+) -> Result<Loaded, Vec<Diagnostic>> {
     // Not more than shows that it is too large, so that nothing endless is read.
     let bytes = world.read_start(path, text::LARGEST + 1).map_err(|error| {
         let message = format!("`{}` could not be read: {error}", path.display());
@@ -58,7 +79,7 @@ pub fn load(
     })?;
     let source = text::decode(path, bytes).map_err(|diagnostic| vec![*diagnostic])?;
     let library = Library::new(KINDS, world, folder_of(path)).allowing(settings.allow_outside);
-    load_source(&library, &source, settings)
+    load_source(&library, &source, settings, cancel)
 }
 
 /// Reads and checks `text` as if it had been read from `path`.
@@ -86,7 +107,8 @@ pub fn load_text_with(
     let path = path.as_ref();
     let world = Memory::default();
     let library = Library::new(kinds, &world, folder_of(path));
-    load_source(&library, &Arc::new(SourceFile::new(path, text)), settings)
+    let source = Arc::new(SourceFile::new(path, text));
+    load_source(&library, &source, settings, &Cancel::new())
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -97,8 +119,10 @@ fn load_source(
     library: &Library<'_>,
     source: &Arc<SourceFile>,
     settings: &Settings,
+    cancel: &Cancel,
 ) -> Result<Loaded, Vec<Diagnostic>> {
     let mut report = Report::new(source);
+    report.cancel = cancel.clone();
     report.allow_outside = settings.allow_outside;
     let Some(files) = compound::gather(&mut report, library, source) else {
         return Err(report.finish());
@@ -199,6 +223,9 @@ fn graph(
     let (parameters, problems) = bound(&definitions[0], settings);
     *set_problems = problems;
     let mut expanded = check::check(report, definitions, parameters.clone(), Arc::clone(&origin));
+    if report.is_full() {
+        return None;
+    }
     expanded.drafts.extend(stand_ins(&definitions[0], &origin));
     let edges = order::edges(&expanded.drafts);
     if let Some(order) = order::sort(report, &expanded.drafts, &edges) {

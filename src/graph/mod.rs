@@ -32,7 +32,7 @@ mod text_literal;
 mod tree;
 
 pub use compound::{Compound, compounds, kinds};
-pub use load::{Loaded, Settings, load, load_text, load_text_with, no_output};
+pub use load::{Loaded, Settings, load, load_text, load_text_with, load_until, no_output};
 pub use origin::Origin;
 
 use crate::diagnostics::{SourceFile, Span};

@@ -1,6 +1,7 @@
 //! Collects what is wrong with a recipe and the compounds it uses.
 
 use super::Origin;
+use crate::cancel::Cancel;
 use crate::diagnostics::{Code, Diagnostic, Severity, SourceFile, Span, Use};
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -27,6 +28,8 @@ pub(super) struct Report {
     left_out: bool,
     /// Parts of expressions that the uses of compounds have passed on.
     passed: usize,
+    /// Ends the reading.
+    pub(super) cancel: Cancel,
 }
 
 impl Report {
@@ -40,6 +43,7 @@ impl Report {
             diagnostics: vec![],
             left_out: false,
             passed: 0,
+            cancel: Cancel::new(),
         }
     }
 
@@ -128,9 +132,9 @@ impl Report {
         self.passed <= PASSED
     }
 
-    /// Whether nothing more is kept.
+    /// Whether nothing more is kept, or wanted.
     pub(super) fn is_full(&self) -> bool {
-        self.left_out
+        self.left_out || self.cancel.is_cancelled()
     }
 
     /// Whether there is an error among the diagnostics.

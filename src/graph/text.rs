@@ -72,7 +72,7 @@ pub(super) fn read(report: &mut Report) -> Option<Tree> {
         return None;
     }
     let tree = syntax::parse(report);
-    if tree.is_some() && !report.has_errors() {
+    if tree.is_some() && !report.has_errors() && !report.is_full() {
         judge(report);
     }
     tree.filter(|_| !report.has_errors())

@@ -100,20 +100,21 @@ impl ColumnCache for Kept {
         None
     }
 
-    fn put(&self, key: Key, _: Columns, _: f64) {
+    fn put(&self, _: &str, key: Key, _: Columns, _: f64) {
         self.0.lock().unwrap().push(key);
     }
 }
 
 #[test]
 fn a_dear_kernel_ends_with_its_piece_and_is_not_remembered() {
-    // 128 x 128 samples in pieces of 1024.
-    let whole = Canceller::new(0, 9.0, Sampling::Filtered);
+    // 128 x 128 samples in pieces of 1024, about 2 ms each.
+    let slow = 1950.0;
+    let whole = Canceller::new(0, slow, Sampling::Filtered);
     assert_eq!(whole.run(), (16, 1));
-    let stopped = Canceller::new(3, 9.0, Sampling::Filtered);
+    let stopped = Canceller::new(3, slow, Sampling::Filtered);
     assert_eq!(stopped.run(), (3, 0));
     // At the last piece there is nothing left to stop, and the columns could be kept; they are not.
-    let late = Canceller::new(16, 9.0, Sampling::Filtered);
+    let late = Canceller::new(16, slow, Sampling::Filtered);
     assert_eq!(late.run(), (16, 0));
 }
 

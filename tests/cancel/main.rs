@@ -3,6 +3,8 @@
 
 mod loops;
 mod placing;
+mod reading;
+mod recipes;
 mod soon;
 
 #[path = "../support/workshop.rs"]

@@ -7,13 +7,13 @@
 //! `YOSEGI_CANCELS` is the number of moments for each case, `YOSEGI_CASES` a part of the names of cases.
 
 use super::*;
-use std::fmt::Write as _;
+use crate::recipes;
 use std::fs;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 use yosegi::engine::{Engine, Render};
-use yosegi::graph::{Graph, Settings, load};
+use yosegi::graph::{Graph, Settings, load, load_until};
 use yosegi::world::Disk;
 
 /// Moments lie within this time from the start of a run.
@@ -55,10 +55,10 @@ fn gallery() -> Vec<PathBuf> {
 }
 
 /// The scratch folder of the campaign, with recipes written into it.
-struct Folder(tempfile::TempDir);
+pub(crate) struct Folder(pub(crate) tempfile::TempDir);
 
 impl Folder {
-    fn write(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
+    pub(crate) fn write(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
         let path = self.0.path().join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, text).unwrap();
@@ -74,7 +74,7 @@ impl Folder {
             "spruce_log/Gran_1_pith.json",
             "spruce_log/Gran_1_knots.json",
         ] {
-            self.write(asset, asset_bytes(asset));
+            self.write(asset, workshop::asset_bytes(asset));
         }
         graph(&self.write(
             &format!("{to}_{name}").replace([' ', ':', ','], ""),
@@ -82,8 +82,6 @@ impl Folder {
         ))
     }
 }
-
-use workshop::asset_bytes;
 
 fn cases(folder: &Folder) -> Vec<Case> {
     let mut cases = vec![];
@@ -134,11 +132,11 @@ fn cases(folder: &Folder) -> Vec<Case> {
         }
     }
     for (name, text) in [
-        ("chain of 10000", chain(10_000)),
-        ("chain of 100000", chain(100_000)),
-        ("supersampled chain of 900", supersampled(900)),
-        ("tree of 500000 rows", tree(folder, 500_000)),
-        ("20000 branches", branches(20_000)),
+        ("chain of 10000", recipes::chain(10_000)),
+        ("chain of 100000", recipes::chain(100_000)),
+        ("supersampled chain of 900", recipes::supersampled(900)),
+        ("tree of 500000 rows", recipes::tree(folder, 500_000)),
+        ("20000 branches", recipes::branches(20_000)),
     ] {
         add(
             name,
@@ -147,14 +145,14 @@ fn cases(folder: &Folder) -> Vec<Case> {
             There::Nothing,
         );
     }
-    let path = folder.write("photo.ron", photograph(folder));
+    let path = folder.write("photo.ron", recipes::photograph(folder));
     add(
         "photograph of 36 megapixels",
         graph(&path),
         None,
         There::Nothing,
     );
-    let path = folder.write("pattern.ron", pattern(folder));
+    let path = folder.write("pattern.ron", recipes::pattern(folder));
     add(
         "pattern of 36 megapixels",
         graph(&path),
@@ -164,227 +162,153 @@ fn cases(folder: &Folder) -> Vec<Case> {
     cases
 }
 
-const END: &str = "
-    \"wood\": material(base_color: \"last\"),
-    \"board\": slice_cut(of: \"wood\", cut: end_grain, origin: (0, 0, 0), size: (40, 40)),
-}, outputs: { \"board\": maps(of: \"board\", pixels: (256, 256)) })";
-
-fn chain(length: usize) -> String {
-    let mut text = String::from(
-        "(nodes: { \"fibre\": solid_noise(size: (5, 5, 150)),
-        \"n0\": mix(a: \"#5b3a1e\", b: \"#c8a06e\", amount: 0.5),\n",
-    );
-    for index in 1..length {
-        let before = index - 1;
-        writeln!(
-            text,
-            "\"n{index}\": mix(a: \"n{before}\", b: \"#c8a06e\", amount: 0.01),"
-        )
-        .unwrap();
-    }
-    let last = length - 1;
-    write!(
-        text,
-        "\"last\": mix(a: \"n{last}\", b: \"#000000\", amount: \"fibre.value\"),{END}"
-    )
-    .unwrap();
-    text
+/// How a cancelled run ended.
+#[derive(Default)]
+struct Ended {
+    /// Milliseconds from the call of `cancel` to the end.
+    taken: f64,
+    /// Milliseconds of processor of all threads in that time.
+    busy: f64,
+    /// Milliseconds that `cancel` itself took.
+    returned: f64,
 }
 
-fn supersampled(length: usize) -> String {
-    let mut text = String::from(
-        "(nodes: { \"fibre\": solid_noise(size: (5, 5, 150)),
-        \"n0\": mix(a: \"#5b3a1e\", b: \"#c8a06e\", amount: \"fibre.value\"),\n",
-    );
-    for index in 1..length {
-        let before = index - 1;
-        writeln!(
-            text,
-            "\"n{index}\": mix(a: \"n{before}\", b: \"#c8a06e\", amount: \"fibre.value\"),"
-        )
-        .unwrap();
-    }
-    let last = length - 1;
-    write!(
-        text,
-        "\"last\": mix(a: \"n{last}\", b: \"#000000\", amount: 0),{END}"
-    )
-    .unwrap();
-    text
-}
-
-fn tree(folder: &Folder, rows: usize) -> String {
-    let mut text = String::from("# unit: mm\nid,parent,x,y,z,radius\n");
-    for index in 1..=rows {
-        let parent = if index % 10 == 1 && index > 1 {
-            index - 10
-        } else {
-            index - 1
-        };
-        let (x, z) = ((index % 10) as f64 * 0.1, (index / 10 * 20) as f64);
-        writeln!(text, "{index},{parent},{x},0,{z},5").unwrap();
-    }
-    folder.write("tree.csv", text);
-    format!(
-        "(nodes: {{ \"tree\": skeleton_from_file(tree: \"tree.csv\"),
-        \"time\": growth_field(skeleton: \"tree\", elongation: 300, thickening: 3, reach: (100, 20)),
-        \"last\": mix(a: \"#5b3a1e\", b: \"#c8a06e\", amount: \"time.branch\"),{END}"
-    )
-}
-
-fn branches(count: usize) -> String {
-    let mut text = String::from(
-        "(nodes: { \"tree\": skeleton(trunk: [(0, 0, -50), (3, 1, 900), (0, 0, 2000)], branches: [",
-    );
-    for index in 0..count {
-        let (at, x) = (index % 1900, index % 7);
-        write!(
-            text,
-            "(at: {at}, direction: ({x}, 1, 0.5), thickening: 0.4),"
-        )
-        .unwrap();
-    }
-    text + "]), \"time\": growth_field(skeleton: \"tree\", elongation: 300, thickening: 3, sharpness: 3),
-        \"last\": mix(a: \"#5b3a1e\", b: \"#c8a06e\", amount: \"time.branch\")," + END
-}
-
-fn noise_picture() -> image::RgbImage {
-    let mut state = 1u32;
-    image::RgbImage::from_fn(6000, 6000, |_, _| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        image::Rgb([state >> 24, state >> 16 & 255, 60 + (state >> 29)].map(|part| part as u8))
-    })
-}
-
-fn photograph(folder: &Folder) -> String {
-    noise_picture()
-        .save(folder.0.path().join("noise.png"))
-        .unwrap();
-    "(nodes: {
-        \"picture\": image_from_file(file: \"noise.png\", size: (600, 600)),
-        \"board\": material(base_color: \"picture.colour\"),
-    }, outputs: { \"board\": maps(of: \"board\", size: (600, 600), pixels: (512, 512)) })"
-        .to_owned()
-}
-
-fn pattern(folder: &Folder) -> String {
-    noise_picture()
-        .save(folder.0.path().join("noise.bmp"))
-        .unwrap();
-    format!(
-        "(nodes: {{ \"year\": sample_pattern(file: \"noise.bmp\", texels: 3000),
-        \"last\": pattern_lookup(time: 0.5, pattern: \"year\"),{END}"
-    )
-}
-
-/// How long after `after` the run ended that is cancelled then; `None` if it ended before.
-fn cancelled(case: &Case, folder: &Path, after: Duration) -> Option<[Duration; 2]> {
-    let store = folder.join("store");
-    let engine = Engine::new(
-        Arc::new(Disk),
-        Options {
-            threads: Some(2),
-            memory: 0,
-            store: Some(store),
-            ..Options::default()
-        },
-    );
-    let engine = engine.unwrap();
-    let cancel = Cancel::new();
-    let request = Render {
-        graph: &case.graph,
-        folder: folder.join("out"),
-        only: vec![],
-        pixels: case.size,
-        listener: &|_| {},
-        cancel: cancel.clone(),
+/// Milliseconds of processor that the threads have had so far.
+fn busy() -> f64 {
+    let nanoseconds = |path: PathBuf| -> Option<f64> {
+        let times = fs::read_to_string(path.join("schedstat")).ok()?;
+        times.split_whitespace().next()?.parse().ok()
     };
+    let tasks = fs::read_dir("/proc/self/task").into_iter().flatten();
+    let threads = tasks.filter_map(|task| nanoseconds(task.ok()?.path()));
+    threads.sum::<f64>() * 1e-6
+}
+
+/// Cancels `run`, which says whether it came to its end, `after` some time; `None` if it did.
+fn cancelled(run: impl FnOnce(&Cancel) -> bool + Send, after: Duration) -> Option<Ended> {
+    let cancel = &Cancel::new();
     thread::scope(|scope| {
-        let run = scope.spawn(|| {
-            let result = engine.render(&request);
-            (result.is_ok(), Instant::now())
+        let run = scope.spawn(move || {
+            let is_done = run(cancel);
+            (is_done, Instant::now(), busy())
         });
         let start = Instant::now();
         while start.elapsed() < after && !run.is_finished() {
             thread::sleep((after - start.elapsed()).min(Duration::from_millis(1)));
         }
-        let thrown = Instant::now();
+        let (thrown, before) = (Instant::now(), busy());
         cancel.cancel();
         let returned = thrown.elapsed();
-        let (is_done, end) = run.join().unwrap();
-        (!is_done).then(|| [end.saturating_duration_since(thrown), returned])
+        let (is_done, end, then) = run.join().unwrap();
+        let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
+        (!is_done).then(|| Ended {
+            taken: milliseconds(end.saturating_duration_since(thrown)),
+            busy: then - before,
+            returned: milliseconds(returned),
+        })
     })
 }
 
-fn prepare(case: &Case, folder: &Path) {
-    if case.there != There::Maps {
-        let _ = fs::remove_dir_all(folder.join("out"));
+impl Case {
+    /// Whether a run came to its end.
+    fn run(&self, folder: &Path, cancel: &Cancel) -> bool {
+        let options = Options {
+            threads: Some(2),
+            memory: 0,
+            store: Some(folder.join("store")),
+            ..Options::default()
+        };
+        let engine = Engine::new(Arc::new(Disk), options).unwrap();
+        let result = engine.render(&Render {
+            graph: &self.graph,
+            folder: folder.join("out"),
+            only: vec![],
+            pixels: self.size,
+            listener: &|_| {},
+            cancel: cancel.clone(),
+        });
+        result.is_ok()
     }
-    if case.there == There::Nothing {
-        let _ = fs::remove_dir_all(folder.join("store"));
+
+    fn prepare(&self, folder: &Path) {
+        if self.there != There::Maps {
+            let _ = fs::remove_dir_all(folder.join("out"));
+        }
+        if self.there == There::Nothing {
+            let _ = fs::remove_dir_all(folder.join("store"));
+        }
+    }
+
+    /// How long a run takes, but not much more than is asked for.
+    fn length(&self, folder: &Path) -> Duration {
+        let whole = Duration::from_secs(3600);
+        if self.there != There::Nothing {
+            assert!(cancelled(|cancel| self.run(folder, cancel), whole).is_none());
+            self.prepare(folder);
+        }
+        let start = Instant::now();
+        let _ = cancelled(|cancel| self.run(folder, cancel), LONGEST);
+        start.elapsed().min(LONGEST)
     }
 }
 
-/// The numbers of a case: worst, 99th of a hundred, middle, all in milliseconds, and how many.
-fn measure(case: &Case, moments: u32) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    let start = Instant::now();
-    let forever = Duration::from_secs(3600);
-    // What is there already has to be whole.
-    let first = if case.there == There::Nothing {
-        LONGEST
-    } else {
-        forever
-    };
-    let _ = cancelled(case, folder, first);
-    let mut length = start.elapsed().min(LONGEST);
-    if case.there != There::Nothing {
-        prepare(case, folder);
-        let start = Instant::now();
-        assert_eq!(cancelled(case, folder, forever), None);
-        length = start.elapsed();
-    }
-    let mut taken = vec![];
-    let mut returned = Duration::ZERO;
-    for moment in 0..moments {
-        prepare(case, folder);
+/// Cancels runs at many moments within `length`, and prints what that took.
+fn measure(name: &str, length: Duration, prepare: impl Fn(), run: impl Fn(&Cancel) -> bool + Sync) {
+    let moments = std::env::var("YOSEGI_CANCELS").map_or(40, |text| text.parse().unwrap());
+    let end_at = |moment: u32| {
+        prepare();
         // The golden ratio spreads moments evenly, however many there are.
         let share = (f64::from(moment) * 0.618_033_988_75).fract();
-        if let Some([end, back]) = cancelled(case, folder, length.mul_f64(share)) {
-            taken.push(end.as_secs_f64() * 1e3);
-            returned = returned.max(back);
-        }
-    }
+        cancelled(&run, length.mul_f64(share))
+    };
+    let ends: Vec<Ended> = (0..moments).filter_map(end_at).collect();
+    let mut taken: Vec<f64> = ends.iter().map(|end| end.taken).collect();
     taken.sort_by(f64::total_cmp);
     let at = |share: f64| {
-        taken
-            .get(((taken.len() as f64 * share) as usize).min(taken.len().saturating_sub(1)))
-            .copied()
-            .unwrap_or(0.0)
+        let place = ((taken.len() as f64 * share) as usize).min(taken.len().saturating_sub(1));
+        taken.get(place).copied().unwrap_or_default()
     };
-    format!(
-        "{:34} worst {:7.1} ms  p99 {:7.1}  p50 {:6.1}  `cancel` {:5.2} ms  of {:3} in {:5.2} s",
-        case.name,
+    let most = |of: fn(&Ended) -> f64| ends.iter().map(of).fold(0.0, f64::max);
+    println!(
+        "{name:34} ended after {:6.1} ms at worst, p99 {:6.1}, p50 {:5.1}; busy {:6.1} ms at worst; `cancel` took \
+         {:4.2} ms at worst; {:3} in {:5.2} s",
         at(1.0),
         at(0.99),
         at(0.5),
-        returned.as_secs_f64() * 1e3,
-        taken.len(),
-        length.as_secs_f64()
-    )
+        most(|end| end.busy),
+        most(|end| end.returned),
+        ends.len(),
+        length.as_secs_f64(),
+    );
 }
 
 #[test]
 #[ignore = "takes some minutes, and is about release builds"]
 fn soon_after_it_was_cancelled_a_run_has_ended() {
-    let moments = std::env::var("YOSEGI_CANCELS").map_or(40, |text| text.parse().unwrap());
     let wanted = std::env::var("YOSEGI_CASES").unwrap_or_default();
     let folder = Folder(tempfile::tempdir().unwrap());
-    for case in cases(&folder)
-        .iter()
-        .filter(|case| case.name.contains(&wanted))
-    {
-        println!("{}", measure(case, moments));
+    for size in [10_000, 100_000] {
+        let name = format!("reading {size} nodes");
+        let path = folder.write("long.ron", recipes::chain(size));
+        let read =
+            |cancel: &Cancel| load_until(&Disk, &path, &Settings::default(), cancel).is_some();
+        if name.contains(&wanted) {
+            let start = Instant::now();
+            assert!(read(&Cancel::new()));
+            measure(&name, start.elapsed(), || (), read);
+        }
+    }
+    for case in cases(&folder) {
+        if case.name.contains(&wanted) {
+            let place = tempfile::tempdir().unwrap();
+            let place = place.path();
+            let length = case.length(place);
+            measure(
+                &case.name,
+                length,
+                || case.prepare(place),
+                |cancel| case.run(place, cancel),
+            );
+        }
     }
 }

@@ -57,6 +57,10 @@ impl World for Forgetful {
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
         Disk.list(folder)
     }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        Disk.remove(path)
+    }
 }
 
 impl Write for ForgetfulFile {

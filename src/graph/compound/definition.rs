@@ -122,8 +122,8 @@ impl<'t> Definition<'t> {
         let layout = Layout::new(report, library, &recipe, known);
         let (mut kind, mut outlets) = (None, vec![]);
         if recipe.role == Role::Compound && file.tree.is_some() {
-            let (outputs, places) = interface::outputs(report, &recipe, &layout);
-            kind = interface::kind(report, file, &recipe, &interface, outputs);
+            let (outputs, places) = interface::outputs(report, library, &recipe, &layout);
+            kind = interface::kind(report, library, file, &recipe, &interface, outputs);
             outlets = places;
         }
         Definition {

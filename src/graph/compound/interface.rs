@@ -8,7 +8,7 @@ use super::super::recipe::{Outlet, Recipe};
 use super::super::report::Report;
 use super::super::{Link, Source};
 use super::layout::Place;
-use super::{File, Layout};
+use super::{File, Layout, Library};
 use crate::diagnostics::Code;
 use crate::node::{Input, Kind, Output, Presence, Varies, interned};
 use crate::value::{Domain, Type, Value};
@@ -25,6 +25,7 @@ const SEED: Input = Input::new(
 /// The outputs, and where each lies; what is wrong is reported and has no place.
 pub(super) fn outputs(
     report: &mut Report,
+    library: &Library<'_>,
     recipe: &Recipe<'_>,
     layout: &Layout<'_>,
 ) -> (Vec<Output>, Vec<Option<Place>>) {
@@ -44,7 +45,7 @@ pub(super) fn outputs(
         });
         let output = Output {
             name: interned::text(outlet.name),
-            about: interned::text(about),
+            about: library.described(about),
             ..found.map_or(UNKNOWN, |found| *found.output)
         };
         let place = found.map(|found| Place {
@@ -88,6 +89,7 @@ const UNKNOWN: Output = Output::field("", Type::Material, "");
 /// The kind; `None` if an output or an input is wrong, which is reported.
 pub(super) fn kind(
     report: &mut Report,
+    library: &Library<'_>,
     file: &File,
     recipe: &Recipe<'_>,
     interface: &Interface,
@@ -105,7 +107,8 @@ pub(super) fn kind(
         report.add(error.hint("add `outputs: { \"name\": \"node.output\" }`"));
         return None;
     }
-    let inputs: Option<Vec<_>> = interface.declared.iter().map(input).collect();
+    let inputs = interface.declared.iter();
+    let inputs: Option<Vec<_>> = inputs.map(|one| input(library, one)).collect();
     let mut inputs = inputs?;
     if let Some(own) = interface.declared.iter().find(|one| one.name == SEED.name) {
         let message = "every compound has an input `seed`, which is not declared";
@@ -118,16 +121,16 @@ pub(super) fn kind(
     Some(interned::kind(interned::Interface {
         name: &file.name,
         version: recipe.version,
-        about: &recipe.about,
-        source: &recipe.source,
+        about: library.described(&recipe.about),
+        source: library.described(&recipe.source),
         inputs,
         outputs,
     }))
 }
 
-fn input(declared: &Declared) -> Option<Input> {
+fn input(library: &Library<'_>, declared: &Declared) -> Option<Input> {
     let presence = match (&declared.default_text, &declared.default) {
-        (Some(text), _) => Presence::Default(interned::text(text)),
+        (Some(text), _) => Presence::Default(library.described(text)),
         (None, Some(_)) => Presence::Optional,
         (None, None) => Presence::Required,
     };
@@ -138,7 +141,7 @@ fn input(declared: &Declared) -> Option<Input> {
         domain: declared.domain,
         presence,
         range: declared.range,
-        about: interned::text(&declared.about),
+        about: library.described(&declared.about),
     })
 }
 

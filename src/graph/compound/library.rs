@@ -23,6 +23,8 @@ pub(in crate::graph) struct Library<'w> {
     world: &'w dyn World,
     /// Whether files may be anywhere.
     allow_outside: bool,
+    /// Whether kinds of compounds say what they mean.
+    is_described: bool,
     /// Where compounds are looked for, the first first, before those that come with Yosegi.
     folders: [PathBuf; 2],
 }
@@ -54,6 +56,7 @@ impl<'w> Library<'w> {
             kinds,
             world,
             allow_outside: false,
+            is_described: false,
             folders,
         }
     }
@@ -84,6 +87,16 @@ impl<'w> Library<'w> {
         };
         let compounds = compounds.iter().map(String::as_str);
         nearest(name, fitting.map(|kind| kind.name).chain(compounds))
+    }
+
+    /// What an interface says for readers: nothing, unless someone lists compounds. Kinds are kept for good,
+    /// and those that recipes are checked against should not change with every word.
+    pub(super) fn described(&self, text: &str) -> &'static str {
+        if self.is_described {
+            interned::text(text)
+        } else {
+            ""
+        }
     }
 
     /// Whether there is a compound called `name`.
@@ -181,7 +194,7 @@ fn uses(file: &File, library: &Library<'_>) -> Vec<(String, Use)> {
                 source: Arc::clone(&file.source),
                 span: entry.key.span.clone(),
                 node: name.into(),
-                kind: interned::text(&word.text),
+                kind: word.text.as_str().into(),
                 outer: file.first_use.clone(),
             };
             (word.text.clone(), one)
@@ -235,6 +248,7 @@ fn read(
     match found {
         Ok(source) => {
             let mut own = Report::new(&source);
+            own.cancel = report.cancel.clone();
             file.tree = text::read(&mut own);
             if file.tree.is_none() && !own.has_errors() {
                 let message = "the file holds no compound";
@@ -260,7 +274,7 @@ fn report_too_many(report: &mut Report, one: &Use) {
     let error = Diagnostic::error(Code::NestedTooDeep, message).at(
         &one.source,
         one.span.clone(),
-        format!("{} is not read", shown(one.kind)),
+        format!("{} is not read", shown(&one.kind)),
     );
     report.add(error.used_by(one.outer.clone()));
 }
@@ -287,7 +301,10 @@ pub fn kinds(world: &dyn World, folder: &Path) -> Vec<&'static Kind> {
 
 /// The compounds that recipes in `folder` can use, by name; those with mistakes are left out.
 pub fn compounds(world: &dyn World, folder: &Path) -> Vec<Compound> {
-    let library = Library::new(crate::nodes::KINDS, world, folder);
+    let library = Library {
+        is_described: true,
+        ..Library::new(crate::nodes::KINDS, world, folder)
+    };
     let described = |name: String| {
         let source = library.find(&name)?.ok()?;
         let kind = super::super::load::interface(&library, &source)?;
