@@ -17,7 +17,7 @@ const LARGE: [&str; 8] = [
     "--only",
     "board",
     "--size",
-    "6000x6000",
+    "12000x12000",
     "--threads",
     "2",
 ];
