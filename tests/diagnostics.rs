@@ -15,8 +15,9 @@ use yosegi::world::Disk;
 const FOLDER: &str = "tests/diagnostics";
 
 /// Codes that no file of reasonable size in this folder can cause, and the tests that cause them.
-const ELSEWHERE: [(Code, &str); 7] = [
+const ELSEWHERE: [(Code, &str); 8] = [
     (Code::OutputOverInput, "tests/outside.rs"),
+    (Code::CacheMismatch, "tests/store/verify.rs"),
     (Code::InvalidEdit, "tests/edit.rs"),
     (Code::FileNotRead, "tests/diagnostics_limits.rs"),
     (Code::TooLarge, "tests/diagnostics_limits.rs"),

@@ -1,6 +1,6 @@
 //! `yosegi cache`: what the store of earlier results holds.
 
-use super::options::default_store;
+use super::options::{LimitArguments, default_store};
 use super::{Exit, report};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -16,9 +16,17 @@ pub(super) struct Arguments {
 #[derive(clap::Subcommand)]
 enum Command {
     /// Count the entries of the store and their bytes.
-    Status(Folder),
+    Status(Status),
     /// Remove all entries of the store and nothing else; what was in them is computed again when needed.
     Clean(Folder),
+}
+
+#[derive(clap::Args)]
+struct Status {
+    #[command(flatten)]
+    folder: Folder,
+    #[command(flatten)]
+    limit: LimitArguments,
 }
 
 #[derive(clap::Args)]
@@ -33,21 +41,28 @@ struct Folder {
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Status<'a> {
+struct Counted<'a> {
     folder: &'a Path,
     entries: usize,
     bytes: u64,
+    /// Most bytes that the store may take; of `status` only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limit: Option<u64>,
+    /// For how long the entry used longest ago has not been used.
+    oldest_seconds: Option<u64>,
     families: &'a [StoreFamily],
 }
 
 pub(super) fn run(arguments: &Arguments) -> Exit {
-    let (options, verb, result) = match &arguments.command {
-        Command::Status(options) => (options, "holds", with(options, store_status)),
-        Command::Clean(options) => (options, "is rid of", with(options, clean_store)),
+    let (options, limit, result) = match &arguments.command {
+        Command::Status(Status { folder, limit }) => {
+            (folder, Some(limit.bytes), with(folder, store_status))
+        }
+        Command::Clean(folder) => (folder, None, with(folder, clean_store)),
     };
     match result {
         Ok((folder, families)) => {
-            print(options, verb, &folder, &families);
+            print(options, limit, &folder, &families);
             Exit::Done
         }
         Err((exit, problem)) => {
@@ -77,27 +92,51 @@ fn with(
     }
 }
 
-fn print(options: &Folder, verb: &str, folder: &Path, families: &[StoreFamily]) {
-    let status = Status {
+fn print(options: &Folder, limit: Option<u64>, folder: &Path, families: &[StoreFamily]) {
+    let counted = Counted {
         folder,
         entries: families.iter().map(|family| family.entries).sum(),
         bytes: families.iter().map(|family| family.bytes).sum(),
+        limit,
+        oldest_seconds: families.iter().filter_map(|it| it.oldest_seconds).max(),
         families,
     };
     if options.json {
-        report::json(&status);
-        return;
+        report::json(&counted);
+    } else {
+        print_text(&counted);
     }
-    let folder = folder.display();
-    let (entries, bytes) = (status.entries, size(status.bytes));
-    report::line(&format!("{folder} {verb} {entries} entries, {bytes}"));
-    for family in families {
-        let StoreFamily {
-            family,
-            entries,
-            bytes,
-        } = family;
-        report::line(&format!("  {family:10} {entries:>8}  {:>10}", size(*bytes)));
+}
+
+fn print_text(counted: &Counted<'_>) {
+    let verb = counted.limit.map_or("is rid of", |_| "holds");
+    let most = counted
+        .limit
+        .map(|limit| format!(" of at most {}", size(limit)));
+    let oldest = counted.oldest_seconds;
+    let oldest = oldest.map(|it| format!(", the oldest last used {} ago", age(it)));
+    report::line(&format!(
+        "{} {verb} {} entries, {}{}{}",
+        counted.folder.display(),
+        counted.entries,
+        size(counted.bytes),
+        most.unwrap_or_default(),
+        oldest.unwrap_or_default()
+    ));
+    for family in counted.families {
+        let (name, entries) = (family.family, family.entries);
+        let bytes = size(family.bytes);
+        report::line(&format!("  {name:10} {entries:>8}  {bytes:>10}"));
+    }
+}
+
+/// A time in the largest unit that it holds twice.
+fn age(seconds: u64) -> String {
+    match seconds {
+        0..120 => format!("{seconds} s"),
+        120..7200 => format!("{} min", seconds / 60),
+        7200..172_800 => format!("{} h", seconds / 3600),
+        _ => format!("{} days", seconds / 86_400),
     }
 }
 
@@ -121,6 +160,12 @@ fn size(bytes: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ages_have_a_unit_that_fits() {
+        let ages = [0, 119, 120, 7199, 7200, 172_800].map(age);
+        assert_eq!(ages, ["0 s", "119 s", "2 min", "119 min", "2 h", "2 days"]);
+    }
 
     #[test]
     fn sizes_have_a_unit_that_fits() {

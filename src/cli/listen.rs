@@ -3,6 +3,7 @@
 use super::report;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use yosegi::engine::{Event, Listener};
 
@@ -14,6 +15,8 @@ pub(super) struct Listen {
     json: bool,
     bar: ProgressBar,
     placed: Mutex<Vec<PathBuf>>,
+    /// Maps that were as they should be, and maps that were put in place.
+    maps: [AtomicUsize; 2],
 }
 
 impl Listen {
@@ -32,6 +35,7 @@ impl Listen {
             json,
             bar,
             placed: Mutex::default(),
+            maps: Default::default(),
         }
     }
 
@@ -44,6 +48,21 @@ impl Listen {
     pub(super) fn placed(&self) -> Vec<PathBuf> {
         let placed = self.placed.lock();
         placed.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Whether there were maps, and all of them were there already.
+    pub(super) fn was_up_to_date(&self) -> bool {
+        let [there, put] = [0, 1].map(|index| self.maps[index].load(Ordering::Relaxed));
+        there > 0 && put == 0
+    }
+
+    fn count(&self, event: &Event) {
+        let index = match event {
+            Event::MapUpToDate { .. } => 0,
+            Event::MapWritten { .. } | Event::MapRestored { .. } => 1,
+            _ => return,
+        };
+        self.maps[index].fetch_add(1, Ordering::Relaxed);
     }
 
     fn warn(&self, text: &str) {
@@ -81,6 +100,11 @@ impl Listen {
             Event::Warning { node, message } => {
                 self.warn(&format!("node `{node}`: {message}"));
             }
+            Event::CacheVerified { compared } => self.bar.suspend(|| {
+                report::note(&format!(
+                    "{compared} results were computed again and compared"
+                ));
+            }),
             Event::StoreFailed { reason } => self.warn(&format!(
                 "the store of earlier results cannot be used: {reason}"
             )),
@@ -137,6 +161,7 @@ fn faults(event: &Event) -> Option<Faults<'_>> {
 
 impl Listener for Listen {
     fn hear(&self, event: Event) {
+        self.count(&event);
         if !self.json {
             self.tell(&event);
         } else if let Ok(text) = serde_json::to_string(&event) {

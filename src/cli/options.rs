@@ -77,6 +77,16 @@ pub(super) struct StoreArguments {
     /// Folder of the store [default: yosegi in the user's cache folder].
     #[arg(long, value_name = "DIR", conflicts_with = "no_cache")]
     cache: Option<PathBuf>,
+    #[command(flatten)]
+    limit: LimitArguments,
+}
+
+/// How large the store may be.
+#[derive(Args)]
+pub(super) struct LimitArguments {
+    /// Most bytes of the store: a number, or one with KiB, MiB, GiB or TiB; the entries used longest ago go first.
+    #[arg(long = "cache-size", value_name = "SIZE", default_value = "2GiB", value_parser = parse_bytes)]
+    pub(super) bytes: u64,
 }
 
 /// The size of the maps, and its limit.
@@ -107,6 +117,7 @@ pub(super) fn once(size: &SizeArguments, store: &StoreArguments) -> Options {
         // One run has no use for columns of another: each output has samples of its own.
         memory: 0,
         store: store.folder(),
+        store_limit: store.limit.bytes,
         largest_output: size.max_pixels,
         ..Options::default()
     }
@@ -137,6 +148,28 @@ pub(super) fn default_store() -> Option<PathBuf> {
     Some(folder.join("yosegi"))
 }
 
+/// A number of bytes: `64MiB`, `1.5 GiB`, `0`.
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, u64); 5] = [
+        ("KiB", 1 << 10),
+        ("MiB", 1 << 20),
+        ("GiB", 1 << 30),
+        ("TiB", 1 << 40),
+        ("", 1),
+    ];
+    let found = UNITS
+        .iter()
+        .find_map(|(unit, bytes)| Some((text.strip_suffix(unit)?.trim(), *bytes)));
+    let number = found.and_then(|(number, unit)| {
+        let number: f64 = number.parse().ok()?;
+        let bytes = number * unit as f64;
+        (0.0..=9e15).contains(&bytes).then_some(bytes as u64)
+    });
+    number.ok_or_else(|| {
+        format!("expected a number of bytes, for example 500000000, 64MiB or 2GiB, found `{text}`")
+    })
+}
+
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| match text.trim().parse() {
         Ok(side) if (1..=65_536).contains(&side) => Ok(side),
@@ -148,4 +181,30 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
         .split_once(['x', 'X'])
         .ok_or("expected WxH, for example 1024x512")?;
     Ok([side(width)?, side(height)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_of_the_store_are_numbers_with_units() {
+        for (text, expected) in [
+            ("0", 0),
+            ("4096", 4096),
+            ("64MiB", 64 << 20),
+            ("1.5 GiB", 3 << 29),
+            ("2KiB", 2048),
+            ("1TiB", 1 << 40),
+        ] {
+            assert_eq!(parse_bytes(text), Ok(expected));
+        }
+        for wrong in ["", "MiB", "-1", "64 mb", "NaN", "inf", "1e300", "9000TiB"] {
+            assert!(
+                parse_bytes(wrong)
+                    .unwrap_err()
+                    .ends_with(&format!("`{wrong}`"))
+            );
+        }
+    }
 }

@@ -24,6 +24,9 @@ pub(super) struct Arguments {
     engine: EngineArguments,
     #[command(flatten)]
     store: StoreArguments,
+    /// Compute everything that the store would give, and compare; what differs is an error and is replaced.
+    #[arg(long, conflicts_with = "no_cache")]
+    verify_cache: bool,
     /// Side of a tile in pixels; the result is the same.
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=512))]
     tile: u32,
@@ -73,6 +76,9 @@ fn render(arguments: &Arguments, engine: &Engine, recipe: &Path, cancel: &Cancel
     match result {
         Ok(maps) => {
             announce(maps.into_iter().map(|map| map.path), json);
+            if listener.was_up_to_date() && !json {
+                report::note(&format!("{} is up to date", recipe.display()));
+            }
             Exit::Done
         }
         Err(error) => {
@@ -107,6 +113,7 @@ pub(super) fn engine_options(arguments: &Arguments) -> Result<Options, String> {
         threads: arguments.engine.threads.map(usize::from),
         tile: arguments.tile,
         level: arguments.engine.level()?,
+        verify: arguments.verify_cache,
         ..options::once(&arguments.size, &arguments.store)
     })
 }

@@ -171,6 +171,10 @@ codes! {
     OutputOverInput, "output-over-input",
         "A map would replace the recipe, a file that the recipe reads, or a file in the store of earlier \
          results. Nothing was rendered. Choose another folder or another name for the output.";
+    CacheMismatch, "cache-mismatch",
+        "A result that was made again, as `--verify-cache` asks, is not the one that a cache had for the same \
+         inputs: a kind gives other results than before under the same version, or the store was tampered with. \
+         The entry was replaced. Whoever has changed a kind raises its version.";
     TooMuch, "too-much",
         "The maps asked for, the programs that compute them, or the nodes inside compounds are more than a \
          limit on one run. The message names the limit, and the switch that raises it or what would keep \

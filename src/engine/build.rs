@@ -4,6 +4,7 @@ use super::event::{Event, Listener};
 use super::memory::{Memory, Structure};
 use super::plan::Plan;
 use super::store::Store;
+use super::verify::Verification;
 use super::{Cancel, RunError, arithmetic, content, reuse};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::field::Field;
@@ -27,6 +28,8 @@ pub(super) struct Builder<'a> {
     pub(super) cancel: &'a Cancel,
     /// Memory for decoded files that the run has left.
     pub(super) budget: Arc<Budget>,
+    /// Compares what is made with what the caches have, if that is asked for.
+    pub(super) verification: Option<Verification>,
 }
 
 /// The built nodes of a plan.
@@ -34,6 +37,8 @@ pub(super) struct Built {
     cells: HashMap<NodeIndex, Cell>,
     /// What is wrong with the nodes that could not be built; nodes that read them are left out.
     pub(super) failures: Vec<Diagnostic>,
+    /// How many results were compared with those in the caches.
+    pub(super) compared: usize,
 }
 
 struct Cell {
@@ -49,6 +54,7 @@ impl Built {
         Built {
             cells: plan.order.iter().map(cell).collect(),
             failures: vec![],
+            compared: 0,
         }
     }
 
@@ -126,6 +132,10 @@ impl Builder<'_> {
             return Err(RunError::Cancelled);
         }
         built.failures = failures.sorted();
+        if let Some(verification) = &self.verification {
+            built.failures.extend(verification.differences());
+            built.compared = verification.compared();
+        }
         Ok(built)
     }
 

@@ -1,6 +1,7 @@
 //! Checks a recipe as far as that is cheap: everything but evaluating samples and writing.
 
 use super::render::{Render, chosen_outputs};
+use super::store::{Store, ToldOnce};
 use super::{Engine, RunError, files};
 use crate::graph::Graph;
 use petgraph::graph::NodeIndex;
@@ -14,6 +15,9 @@ impl Engine {
     /// As [`Engine::render`], all at once: failures of nodes, and outputs over the limit or with a file
     /// in common.
     pub fn check(&self, request: &Render<'_>) -> Result<(), RunError> {
+        let _in_use = self.store.as_ref().map(Store::begin);
+        let listener = ToldOnce::new(request.listener);
+        let request = &listener.request(request);
         let run = self.until(&request.cancel, &self.world);
         self.threads
             .install(|| run.ended(run.check_all(request), request.listener))

@@ -3,7 +3,8 @@
 use super::memory::Structure;
 use crate::key::{Key, KeyHasher};
 use crate::node::Kind;
-use crate::value::{Material, Type, Value};
+use crate::value::{ColourPattern, Material, Skeleton, Type, Value};
+use serde::Deserialize;
 use std::sync::Arc;
 
 /// The content key of a value.
@@ -64,26 +65,51 @@ pub(super) fn encode(values: &[Value], warnings: &[String]) -> Vec<u8> {
 
 /// The outputs of a node of `kind` from bytes; `None` if they are not what [`encode`] writes.
 pub(super) fn decode(kind: &Kind, bytes: &[u8]) -> Option<Structure> {
-    let (parts, warnings): (Vec<Vec<u8>>, Vec<String>) = postcard::from_bytes(bytes).ok()?;
-    if parts.len() != kind.outputs.len() {
+    let (mut rest, count) = (bytes, kind.outputs.len());
+    // Nothing is made of a number in the bytes before it is known to be right.
+    if take::<usize>(&mut rest)? != count {
         return None;
     }
-    let decode = |(output, bytes): (&crate::node::Output, &Vec<u8>)| match output.value_type {
-        Type::Skeleton => postcard::from_bytes(bytes)
-            .ok()
-            .map(|value| Value::Skeleton(Arc::new(value))),
-        Type::ColourPattern => postcard::from_bytes(bytes)
-            .ok()
-            .map(|value| Value::ColourPattern(Arc::new(value))),
-        _ => None,
-    };
-    let values: Option<Vec<Value>> = kind.outputs.iter().zip(&parts).map(decode).collect();
+    let outputs = kind.outputs.iter();
+    let values: Option<Vec<Value>> = outputs
+        .map(|output| decode_value(output.value_type, take(&mut rest)?))
+        .collect();
     let values = values?;
+    let warnings = (0..take::<usize>(&mut rest)?)
+        .map(|_| take::<String>(&mut rest).filter(|warning| is_plain(warning)))
+        .collect::<Option<Vec<String>>>()?;
     let keys = values.iter().map(key).collect();
-    Some(Structure {
+    rest.is_empty().then_some(Structure {
         values,
         keys,
         warnings,
         taken: 0,
     })
+}
+
+fn take<'b, T: Deserialize<'b>>(bytes: &mut &'b [u8]) -> Option<T> {
+    let (value, rest) = postcard::take_from_bytes(bytes).ok()?;
+    *bytes = rest;
+    Some(value)
+}
+
+fn decode_value(value_type: Type, bytes: &[u8]) -> Option<Value> {
+    match value_type {
+        Type::Skeleton => {
+            let skeleton = postcard::from_bytes(bytes).ok();
+            let skeleton = skeleton.filter(Skeleton::is_sound)?;
+            Some(Value::Skeleton(Arc::new(skeleton)))
+        }
+        Type::ColourPattern => {
+            let pattern = postcard::from_bytes(bytes).ok();
+            let pattern = pattern.filter(ColourPattern::is_sound)?;
+            Some(Value::ColourPattern(Arc::new(pattern)))
+        }
+        _ => None,
+    }
+}
+
+/// Whether a stored text can be shown: it has no characters that a terminal takes for commands.
+pub(super) fn is_plain(text: &str) -> bool {
+    !text.contains(|letter: char| letter.is_control() && letter != '\n' && letter != '\t')
 }

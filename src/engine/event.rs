@@ -130,6 +130,11 @@ pub enum Event {
         /// What the operating system says.
         reason: String,
     },
+    /// Results that the caches had were made again and compared; what differs is an error of the run.
+    CacheVerified {
+        /// How many results.
+        compared: usize,
+    },
     /// The run was stopped before its end.
     Cancelled,
 }

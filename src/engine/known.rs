@@ -4,9 +4,10 @@ use super::build::Built;
 use super::event::Event;
 use super::plan::{Plan, ancestors};
 use super::render::{Output, Render, WantedMap};
-use super::store::{MapRecord, Store};
-use super::{Engine, RESULTS, files};
+use super::store::{Family, MapRecord, Store};
+use super::{Engine, RESULTS, content, files};
 use crate::key::{Key, KeyHasher};
+use crate::value::MapFormat;
 use crate::world::Listed;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
@@ -23,11 +24,29 @@ pub(super) struct KnownMap {
 }
 
 /// What the store remembers of an output.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct OutputRecord {
     pub(super) maps: Vec<WantedMap>,
     /// The plan keys of nodes with what they warned of.
     pub(super) warnings: Vec<(Key, String)>,
+}
+
+impl OutputRecord {
+    /// Whether it can be one of the output `name`: whoever may write into the store must not choose which
+    /// files are written.
+    fn is_sound(&self, name: &str) -> bool {
+        let is_name = |text: &str| {
+            let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+            !text.is_empty() && text.chars().all(plain)
+        };
+        let is_sound = |map: &WantedMap| {
+            let mut formats = MapFormat::ALL.into_iter();
+            let is_named = |format| files::file_name(name, &map.channel, format) == map.file_name;
+            is_name(&map.channel) && formats.any(is_named)
+        };
+        let mut warnings = self.warnings.iter();
+        self.maps.iter().all(is_sound) && warnings.all(|(_, text)| content::is_plain(text))
+    }
 }
 
 /// An output of which nothing need be painted.
@@ -50,10 +69,11 @@ impl Engine {
         })
     }
 
-    /// What a plan has led to.
-    pub(super) fn planned(&self, plan: &Key) -> Option<OutputRecord> {
-        let bytes = self.store.as_ref()?.get("plan", plan)?;
-        postcard::from_bytes(&bytes).ok()
+    /// What a plan for the output `name` has led to.
+    pub(super) fn planned(&self, name: &str, plan: &Key) -> Option<OutputRecord> {
+        let bytes = self.store.as_ref()?.get(Family::Plan, plan)?;
+        let record: Option<OutputRecord> = postcard::from_bytes(&bytes).ok();
+        record.filter(|record| record.is_sound(name))
     }
 
     /// What the output `name` is before anything has run: `node` is the plan key of its node.
@@ -77,7 +97,10 @@ impl Output<'_> {
 
     /// The maps, if the store knows them all and they are in place or can be put there; changes nothing.
     pub(super) fn known(&self) -> Option<KnownOutput> {
-        let OutputRecord { maps, warnings } = self.engine.planned(&self.plan_key())?;
+        if self.verification.is_some() {
+            return None;
+        }
+        let OutputRecord { maps, warnings } = self.engine.planned(self.name(), &self.plan_key())?;
         let world = &*self.engine.world;
         if !maps
             .iter()

@@ -3,6 +3,7 @@
 use super::build::{Built, Resolver};
 use super::memory::Structure;
 use super::plan::Plan;
+use super::store::Family;
 use super::{Engine, content};
 use crate::key::Key;
 use crate::node::Kind;
@@ -54,7 +55,7 @@ impl Engine {
         if let Some(structure) = self.memory.structure(key) {
             return Some((structure, Place::Memory));
         }
-        let bytes = self.store.as_ref()?.get("structure", key)?;
+        let bytes = self.store.as_ref()?.get(Family::Structure, key)?;
         content::decode(kind, &bytes).map(|structure| (structure, Place::Disk))
     }
 }

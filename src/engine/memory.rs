@@ -159,7 +159,7 @@ impl ColumnCache for Memory {
         spare.unwrap_or_else(|| Vec::with_capacity(length))
     }
 
-    fn put(&self, key: Key, columns: Columns, nanoseconds: f64) {
+    fn put(&self, _: &str, key: Key, columns: Columns, nanoseconds: f64) {
         let bytes = columns.iter().map(column_bytes).sum();
         self.put_content(key, Content::Columns(columns), bytes, nanoseconds);
     }
@@ -224,10 +224,10 @@ mod tests {
     #[test]
     fn the_cheapest_per_byte_is_dropped_first_and_the_budget_holds() {
         let memory = Memory::new(3 * 1024);
-        memory.put(key("dear"), columns(1.0), 1e6);
-        memory.put(key("cheap"), columns(2.0), 1e3);
-        memory.put(key("middle"), columns(3.0), 1e5);
-        memory.put(key("new"), columns(4.0), 1e5);
+        memory.put("node", key("dear"), columns(1.0), 1e6);
+        memory.put("node", key("cheap"), columns(2.0), 1e3);
+        memory.put("node", key("middle"), columns(3.0), 1e5);
+        memory.put("node", key("new"), columns(4.0), 1e5);
         assert!(memory.get(&key("cheap")).is_none());
         assert_eq!(
             memory.get(&key("dear")).map(|columns| columns[0][0]),
@@ -239,9 +239,9 @@ mod tests {
     #[test]
     fn dropped_columns_are_used_again_unless_someone_reads_them() {
         let memory = Memory::new(1024);
-        memory.put(key("first"), columns(1.0), 1.0);
+        memory.put("node", key("first"), columns(1.0), 1.0);
         let place = memory.get(&key("first")).unwrap()[0].as_ptr();
-        memory.put(key("second"), columns(2.0), 1.0);
+        memory.put("node", key("second"), columns(2.0), 1.0);
         assert!(memory.get(&key("first")).is_none());
         // Too large or too small for it.
         let unfit = [257, 200].map(|length| memory.column(length));
@@ -249,7 +249,7 @@ mod tests {
         let again = memory.column(250);
         assert_eq!((again.as_ptr(), again.len()), (place, 0));
         let read = memory.get(&key("second")).unwrap();
-        memory.put(key("third"), columns(3.0), 1.0);
+        memory.put("node", key("third"), columns(3.0), 1.0);
         let other = memory.column(256);
         assert!(other.as_ptr() != read[0].as_ptr());
     }
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_not_kept() {
         let memory = Memory::new(100);
-        memory.put(key("large"), columns(1.0), 1e9);
+        memory.put("node", key("large"), columns(1.0), 1e9);
         assert!(memory.get(&key("large")).is_none());
         assert_eq!(memory.bytes(), 0);
     }

@@ -7,7 +7,6 @@ mod check;
 mod content;
 mod event;
 mod files;
-mod keeping;
 mod known;
 mod look_up;
 mod memory;
@@ -22,15 +21,17 @@ mod sample;
 mod stoppable;
 mod store;
 mod target;
+mod verify;
 mod wanted;
 mod why;
+mod write;
 
 pub use crate::cancel::Cancel;
 pub use event::{Event, From as ReusedFrom, Listener};
-pub use keeping::{StoreFamily, clean_store, store_status};
 pub use pace::Pace;
 pub use render::{Render, RenderedMap};
 pub use sample::SampledField;
+pub use store::{StoreFamily, clean_store, store_status};
 pub use target::FlatPiece;
 pub use why::{Cause, Explained, Fate, Why};
 
@@ -48,6 +49,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use stoppable::Stoppable;
 use store::Store;
+use verify::Verification;
 
 /// Raised whenever pixels or files change for a reason outside a kind: filtering, arithmetic, encoding.
 const RESULTS: u32 = 3;
@@ -68,6 +70,12 @@ pub struct Options {
     pub memory: usize,
     /// The folder of the store; `None` keeps nothing on disk.
     pub store: Option<PathBuf>,
+    /// Bytes that the store may take on disk, in whole blocks of 4096: more than that, and entries go that
+    /// were used longest ago. What a run uses stays until it ends. 0 keeps nothing.
+    pub store_limit: u64,
+    /// Whether everything that the caches would give is made again and compared. Differences are errors with
+    /// the code [`Code::CacheMismatch`], and are replaced.
+    pub verify: bool,
     /// Most pixels that one output may have.
     pub largest_output: u64,
     /// Whether maps are on the disk before they replace what is there, so that a loss of power leaves the
@@ -85,6 +93,8 @@ impl Default for Options {
             level: None,
             memory: 512 << 20,
             store: None,
+            store_limit: 2 << 30,
+            verify: false,
             largest_output: 1 << 30,
             durable: true,
             filtering: true,
@@ -151,7 +161,7 @@ impl Engine {
         let store = options
             .store
             .clone()
-            .map(|folder| Store::new(Arc::clone(&world), folder));
+            .map(|folder| Store::new(Arc::clone(&world), folder, options.store_limit));
         Ok(Engine {
             memory: Arc::new(Memory::new(options.memory)),
             threads: threads(&options)?,
@@ -204,6 +214,7 @@ impl Engine {
             listener,
             budget: std::sync::Arc::default(),
             cancel: &self.cancel,
+            verification: self.options.verify.then(Verification::default),
         };
         builder.build(plan)
     }

@@ -3,16 +3,15 @@
 use super::build::Built;
 use super::event::{Event, Listener, tell_store_failed};
 use super::known::{KnownMap, KnownOutput, OutputRecord, repeat_warnings};
-use super::paint::{Painter, Sheet};
 use super::plan::Plan;
 use super::progress::Meter;
+use super::store::{Family, Store, ToldOnce};
+use super::verify::Verification;
 use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
-use crate::field::{Field, Program, Target};
 use crate::graph::{Graph, no_output};
 use crate::key::Key;
-use crate::output::{self, Encoder, Faults, MapRequest};
-use crate::value::Maps;
+use crate::output::Faults;
 use crate::world::World;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
@@ -49,7 +48,7 @@ pub struct RenderedMap {
 }
 
 /// A map that an output asks for.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct WantedMap {
     pub(super) channel: String,
     pub(super) file_name: String,
@@ -76,6 +75,9 @@ impl Engine {
         request: &Render<'_>,
         inputs: &Arc<dyn World>,
     ) -> Result<Vec<RenderedMap>, RunError> {
+        let _in_use = self.store.as_ref().map(Store::begin);
+        let listener = ToldOnce::new(request.listener);
+        let request = &listener.request(request);
         let run = self.until(&request.cancel, inputs);
         self.threads
             .install(|| run.ended(run.render_outputs(request), request.listener))
@@ -131,7 +133,7 @@ impl Engine {
         }
         self.tell_stale(request, &outputs, &rendered, &names);
         let rendered = rendered.concat();
-        built.complete()?;
+        self.judge(&built, &outputs, request.listener)?;
         self.remember_run(request, &plan);
         Ok(rendered)
     }
@@ -175,6 +177,7 @@ impl Engine {
             plan,
             protected,
             index: *index,
+            verification: self.options.verify.then(Verification::default),
         };
         wanted.iter().map(output).collect()
     }
@@ -211,6 +214,8 @@ pub(super) struct Output<'a> {
     pub(super) plan: &'a Plan<'a>,
     pub(super) protected: &'a files::Protected,
     pub(super) index: NodeIndex,
+    /// Compares what is painted with what the store has, if that is asked for.
+    pub(super) verification: Option<Verification>,
 }
 
 impl Output<'_> {
@@ -301,77 +306,11 @@ impl Output<'_> {
 
     /// Whether the map is in place or can be put there; says so.
     fn found(&self, map: &WantedMap) -> bool {
-        let known = self.known_map(map);
+        let known = match self.verification {
+            Some(_) => None,
+            None => self.known_map(map),
+        };
         known.is_some_and(|known| self.put_in_place(&known))
-    }
-
-    fn write_maps(
-        &self,
-        maps: &Maps,
-        target: &FlatPiece,
-        missing: &[&WantedMap],
-        meter: &Meter<'_>,
-    ) -> Result<Vec<Faults>, RunError> {
-        let field = |map: &&WantedMap| self.field(maps, &map.channel).0;
-        let fields: Vec<Field> = missing.iter().map(field).collect();
-        let cancel = &self.engine.cancel;
-        let program = Program::compile_until(&fields, cancel).ok_or(RunError::Cancelled)?;
-        self.check_program(&program)?;
-        let sheets: io::Result<Vec<Sheet>> = missing
-            .iter()
-            .map(|map| self.sheet(maps, target, map))
-            .collect();
-        let mut sheets = sheets.map_err(|error| RunError::not_written(&error))?;
-        let painter = Painter {
-            output: self.name(),
-            program: &program,
-            target,
-            options: &self.engine.options,
-            context: self.engine.context(),
-            listener: self.request.listener,
-            cancel,
-            meter,
-        };
-        painter.paint(&mut sheets)?;
-        let faults = sheets.iter().map(|sheet| sheet.faults).collect();
-        for (sheet, map) in sheets.into_iter().zip(missing) {
-            sheet
-                .writer
-                .finish()
-                .map_err(|error| RunError::not_written(&error))?;
-            self.request.listener.hear(Event::MapWritten {
-                output: self.name().to_owned(),
-                channel: map.channel.clone(),
-                path: self.path(map),
-                not_finite: sheet.faults.non_finite,
-                clamped: sheet.faults.clamped,
-            });
-        }
-        Ok(faults)
-    }
-
-    fn sheet(&self, maps: &Maps, target: &FlatPiece, map: &WantedMap) -> io::Result<Sheet> {
-        let (_, kind) = self.field(maps, &map.channel);
-        let request = MapRequest {
-            pixels: target.pixels(),
-            size_mm: maps.size,
-            kind,
-            format: maps.format,
-            key: map.key,
-            channel: map.channel.clone(),
-        };
-        let range = maps.ranges.get(&map.channel).copied();
-        let (world, cancel) = (&*self.engine.world, &self.engine.cancel);
-        let create = if self.engine.options.durable {
-            output::create_durable
-        } else {
-            output::create_until
-        };
-        Ok(Sheet {
-            encoder: Encoder::new(kind, maps.format, range),
-            writer: create(world, &self.path(map), &request, cancel)?,
-            faults: Faults::default(),
-        })
     }
 
     /// Tells the store what was written, and which maps the plan leads to.
@@ -379,7 +318,7 @@ impl Output<'_> {
         &self,
         wanted: &[WantedMap],
         built: &Built,
-        mut written: impl Iterator<Item = (&'m WantedMap, Faults)>,
+        mut written: impl Iterator<Item = (&'m WantedMap, Faults)> + Clone,
     ) {
         let Some(store) = &self.engine.store else {
             return;
@@ -388,13 +327,14 @@ impl Output<'_> {
             maps: wanted.to_vec(),
             warnings: self.warnings(built),
         };
+        self.verify(&record, written.clone());
         let stored = written
             .try_for_each(|(map, faults)| {
                 let faults = [faults.non_finite, faults.clamped];
                 store.put_map(&map.key, &self.path(map), faults)
             })
             .and_then(|()| postcard::to_stdvec(&record).map_err(io::Error::other))
-            .and_then(|bytes| store.put("plan", &self.plan_key(), &bytes));
+            .and_then(|bytes| store.put(Family::Plan, &self.plan_key(), &bytes));
         if let Err(error) = stored {
             tell_store_failed(self.request.listener, &self.engine.cancel, &error);
         }

@@ -4,6 +4,7 @@ use super::build::Builder;
 use super::content;
 use super::event::{Event, From, tell_store_failed};
 use super::memory::Structure;
+use super::store::Family;
 use crate::graph::{Node, Source};
 use crate::key::{Key, KeyHasher};
 use crate::node::Failure;
@@ -20,7 +21,8 @@ impl Builder<'_> {
         let mut key = KeyHasher::new("decoded", 1);
         // The fields report what they did under the node's name.
         let key = key.key(content_key).text(&node.name).finish();
-        if let Some(structure) = self.memory.structure(&key)
+        if self.verification.is_none()
+            && let Some(structure) = self.memory.structure(&key)
             && self.budget.take(structure.taken)
         {
             self.listener.hear(Event::StructureReused {
@@ -31,6 +33,7 @@ impl Builder<'_> {
         }
         let start = Instant::now();
         let structure = make()?;
+        self.verify_decoded(node, key, &structure);
         let bytes = usize::try_from(structure.taken).unwrap_or(usize::MAX);
         self.memory
             .put_structure(key, structure.clone(), bytes, nanoseconds(start));
@@ -49,31 +52,23 @@ impl Builder<'_> {
         make: impl FnOnce() -> Result<Structure, Failure>,
     ) -> Result<Structure, Failure> {
         let name = node.name.to_string();
-        if let Some(structure) = self.memory.structure(&key) {
-            self.listener.hear(Event::StructureReused {
-                node: name,
-                from: From::Memory,
-            });
-            return Ok(structure);
-        }
         let start = Instant::now();
-        let stored = self.store.and_then(|store| store.get("structure", &key));
-        if let Some(bytes) = stored
-            && let Some(structure) = content::decode(node.kind, &bytes)
+        if self.verification.is_none()
+            && let Some((structure, from)) = self.known_structure(node, key)
         {
-            self.memory
-                .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
-            self.listener.hear(Event::StructureReused {
-                node: name,
-                from: From::Disk,
-            });
+            let reused = Event::StructureReused { node: name, from };
+            self.listener.hear(reused);
             return Ok(structure);
         }
         let structure = make()?;
         let bytes = content::encode(&structure.values, &structure.warnings);
+        self.verify_structure(node, key, &bytes);
         self.memory
             .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
-        if let Some(Err(error)) = self.store.map(|store| store.put("structure", &key, &bytes)) {
+        if let Some(Err(error)) = self
+            .store
+            .map(|store| store.put(Family::Structure, &key, &bytes))
+        {
             tell_store_failed(self.listener, self.cancel, &error);
         }
         let milliseconds = nanoseconds(start) * 1e-6;
@@ -82,6 +77,19 @@ impl Builder<'_> {
             milliseconds,
         });
         Ok(structure)
+    }
+
+    /// A structure from memory or from the store, which memory keeps then.
+    fn known_structure(&self, node: &Node, key: Key) -> Option<(Structure, From)> {
+        if let Some(structure) = self.memory.structure(&key) {
+            return Some((structure, From::Memory));
+        }
+        let start = Instant::now();
+        let bytes = self.store?.get(Family::Structure, &key)?;
+        let structure = content::decode(node.kind, &bytes)?;
+        self.memory
+            .put_structure(key, structure.clone(), bytes.len(), nanoseconds(start));
+        Some((structure, From::Disk))
     }
 }
 

@@ -6,6 +6,7 @@ use crate::world::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, Worl
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Bytes that are read or written between two looks at the switch: less than a millisecond's.
 const PIECE: usize = 1 << 20;
@@ -75,6 +76,14 @@ impl World for Stoppable {
     fn remove(&self, path: &Path) -> io::Result<()> {
         self.cancel.check()?;
         self.world.remove(path)
+    }
+
+    fn is_link(&self, path: &Path) -> bool {
+        self.world.is_link(path)
+    }
+
+    fn touch(&self, path: &Path, after: Duration) -> io::Result<()> {
+        self.world.touch(path, after)
     }
 
     fn stamp(&self, path: &Path) -> io::Result<Stamp> {

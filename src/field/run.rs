@@ -30,8 +30,8 @@ pub trait ColumnCache: Send + Sync {
         Vec::with_capacity(length)
     }
 
-    /// Stores columns that took about `nanoseconds` to compute.
-    fn put(&self, key: Key, columns: Columns, nanoseconds: f64);
+    /// Stores columns of `node` that took about `nanoseconds` to compute.
+    fn put(&self, node: &str, key: Key, columns: Columns, nanoseconds: f64);
 }
 
 /// What a run needs besides the program and the samples.
@@ -335,5 +335,5 @@ fn store(scratch: &Scratch, step: &KernelStep, key: Key, context: &RunContext<'_
     };
     let columns: Columns = step.outputs.iter().map(copy).collect();
     let nanoseconds = f64::from(step.kernel.nanoseconds()) * padded as f64;
-    cache.put(key, columns, nanoseconds);
+    cache.put(&step.node, key, columns, nanoseconds);
 }

@@ -27,3 +27,59 @@ pub struct ColourPattern {
     /// stays sharp: nothing is interpolated across the ends of the table.
     pub smooth: bool,
 }
+
+/// Most colours, rings and years that a pattern has.
+const MOST: [usize; 2] = [65_536, 100_000];
+
+impl ColourPattern {
+    /// Whether it is what nodes make: finite, with colours, and rings that start one behind the other.
+    pub fn is_sound(&self) -> bool {
+        let [colours, rings] = MOST;
+        let starts = &self.ring_starts;
+        (1..=colours).contains(&self.colours.len())
+            && (1..=rings).contains(&starts.len())
+            && self.colours.as_flattened().iter().all(|it| it.is_finite())
+            && (1e-6..=rings as f64).contains(&self.years)
+            && starts[0] == 0.0
+            && starts.windows(2).all(|pair| pair[0] < pair[1])
+            && starts[starts.len() - 1] < 1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pattern(change: fn(&mut ColourPattern)) -> ColourPattern {
+        let mut pattern = ColourPattern {
+            colours: vec![[0.5; 3]],
+            years: 2.0,
+            ring_starts: vec![0.0, 0.5],
+            after_end: AfterEnd::Repeat,
+            smooth: true,
+        };
+        change(&mut pattern);
+        pattern
+    }
+
+    #[test]
+    fn only_what_nodes_make_is_sound() {
+        assert!(pattern(|_| {}).is_sound());
+        let unsound: [fn(&mut ColourPattern); 11] = [
+            |it| it.colours.clear(),
+            |it| it.colours = vec![[0.0; 3]; 65_537],
+            |it| it.colours[0][1] = f32::NAN,
+            |it| it.years = 0.0,
+            |it| it.years = f64::NAN,
+            |it| it.years = 1e9,
+            |it| it.ring_starts.clear(),
+            |it| it.ring_starts[0] = 0.1,
+            |it| it.ring_starts[1] = 0.0,
+            |it| it.ring_starts[1] = f64::NAN,
+            |it| it.ring_starts[1] = 1.0,
+        ];
+        for (number, change) in unsound.into_iter().enumerate() {
+            assert!(!pattern(change).is_sound(), "{number}");
+        }
+    }
+}

@@ -23,6 +23,47 @@ pub struct Skeleton {
     pub branches: Vec<Branch>,
 }
 
+/// No tree is as large as this, in mm.
+const LARGEST: f64 = 1e9;
+
+impl Skeleton {
+    /// Whether it is what nodes make: finite, with a trunk that rises and branches that start on it.
+    pub fn is_sound(&self) -> bool {
+        let nodes = || self.trunk.iter();
+        let [Some(lowest), Some(highest)] = [self.trunk.first(), self.trunk.last()] else {
+            return false;
+        };
+        let heights = lowest.z..=highest.z;
+        nodes().count() > 1
+            && nodes().all(|node| node.abs().max_element() <= LARGEST && node.is_finite())
+            && self.trunk.windows(2).all(|pair| pair[0].z < pair[1].z)
+            && self
+                .branches
+                .iter()
+                .all(|branch| heights.contains(&branch.height) && branch.is_sound())
+    }
+}
+
+impl Branch {
+    fn is_sound(&self) -> bool {
+        let length = self.direction.length();
+        (length - 1.0).abs() < 1e-6 && self.thickness.is_sound()
+    }
+}
+
+impl Thickness {
+    fn is_sound(self) -> bool {
+        let is_length = |length: f64| length > 0.0 && length <= LARGEST;
+        match self {
+            Thickness::Speed(speed) => is_length(speed),
+            Thickness::HalfWidth {
+                distance,
+                half_width,
+            } => is_length(distance) && is_length(half_width),
+        }
+    }
+}
+
 /// A straight branch that starts on the trunk's curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Branch {
@@ -47,4 +88,50 @@ pub enum Thickness {
         /// Distance from the axis to the branch's border.
         half_width: f64,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn skeleton(change: fn(&mut Skeleton)) -> Skeleton {
+        let mut skeleton = Skeleton {
+            trunk: vec![DVec3::ZERO, DVec3::new(1.0, 2.0, 100.0)],
+            tangents: Tangents::Natural,
+            branches: vec![Branch {
+                height: 50.0,
+                direction: DVec3::X,
+                thickness: Thickness::Speed(1.0),
+            }],
+        };
+        change(&mut skeleton);
+        skeleton
+    }
+
+    #[test]
+    fn only_what_nodes_make_is_sound() {
+        assert!(skeleton(|_| {}).is_sound());
+        let unsound: [fn(&mut Skeleton); 12] = [
+            |it| it.trunk.clear(),
+            |it| it.trunk.truncate(1),
+            |it| it.trunk[1].z = 0.0,
+            |it| it.trunk[1].z = f64::INFINITY,
+            |it| it.trunk[1].x = f64::NAN,
+            |it| it.trunk[0].x = -1e300,
+            |it| it.branches[0].height = 101.0,
+            |it| it.branches[0].height = f64::NAN,
+            |it| it.branches[0].direction = DVec3::ZERO,
+            |it| it.branches[0].direction.y = f64::NAN,
+            |it| it.branches[0].thickness = Thickness::Speed(0.0),
+            |it| {
+                it.branches[0].thickness = Thickness::HalfWidth {
+                    distance: 1.0,
+                    half_width: f64::INFINITY,
+                }
+            },
+        ];
+        for (number, change) in unsound.into_iter().enumerate() {
+            assert!(!skeleton(change).is_sound(), "{number}");
+        }
+    }
 }

@@ -1,12 +1,19 @@
 //! A world in memory, for tests and for callers that want maps without files.
 
-use super::{Listed, PendingFile, World};
+use super::{Listed, PendingFile, World, are_apart};
 use std::collections::BTreeMap;
 use std::io::{self, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, SystemTime};
 
-type Files = BTreeMap<PathBuf, Vec<u8>>;
+type Files = BTreeMap<PathBuf, OneFile>;
+
+#[derive(Debug)]
+struct OneFile {
+    bytes: Vec<u8>,
+    modified: SystemTime,
+}
 
 /// Files by path, without folders or links; clones share the files.
 #[derive(Clone, Debug, Default)]
@@ -17,7 +24,18 @@ pub struct Memory {
 impl Memory {
     /// Puts a file in place, replacing what was there.
     pub fn insert(&self, path: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) {
-        self.lock().insert(path.into(), bytes.into());
+        let file = OneFile {
+            bytes: bytes.into(),
+            modified: SystemTime::now(),
+        };
+        self.lock().insert(path.into(), file);
+    }
+
+    /// Sets when a file was last written; false if it is not there.
+    pub fn set_modified(&self, path: &Path, modified: SystemTime) -> bool {
+        let mut files = self.lock();
+        let file = files.get_mut(path);
+        file.map(|file| file.modified = modified).is_some()
     }
 
     /// The paths of all files, sorted.
@@ -33,7 +51,9 @@ impl Memory {
 
 impl World for Memory {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        self.lock().get(path).cloned().ok_or_else(not_found)
+        let files = self.lock();
+        let file = files.get(path).ok_or_else(not_found)?;
+        Ok(file.bytes.clone())
     }
 
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
@@ -47,21 +67,39 @@ impl World for Memory {
 
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
         let mut listed = BTreeMap::new();
-        for (path, contents) in self.lock().iter() {
-            let mut parts = match path.strip_prefix(folder) {
-                Ok(inside) => inside.components(),
-                Err(_) => continue,
+        let files = self.lock();
+        // Paths are sorted part by part, so what is in a folder follows it at once.
+        for (path, file) in files.range(folder.to_owned()..) {
+            let Ok(inside) = path.strip_prefix(folder) else {
+                break;
             };
+            let mut parts = inside.components();
             if let Some(name) = parts.next() {
                 let is_file = parts.next().is_none();
-                listed.insert(folder.join(name), is_file.then_some(contents.len() as u64));
+                let path = folder.join(name);
+                let entry = Listed {
+                    path: path.clone(),
+                    bytes: is_file.then_some(file.bytes.len() as u64),
+                    is_link: false,
+                    modified: Some(file.modified),
+                };
+                listed.insert(path, entry);
             }
         }
         if listed.is_empty() {
             return Err(not_found());
         }
-        let entry = |(path, bytes)| Listed { path, bytes };
-        Ok(listed.into_iter().map(entry).collect())
+        Ok(listed.into_values().collect())
+    }
+
+    fn touch(&self, path: &Path, after: Duration) -> io::Result<()> {
+        let mut files = self.lock();
+        let file = files.get_mut(path).ok_or_else(not_found)?;
+        let now = SystemTime::now();
+        if are_apart(file.modified, now, after) {
+            file.modified = now;
+        }
+        Ok(())
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {
@@ -126,16 +164,37 @@ mod tests {
         let world = Memory::default();
         world.insert("maps/a", "four");
         world.insert("maps/b/c", "");
-        let listed = |path: &str, bytes| Listed {
-            path: path.into(),
-            bytes,
+        let listed = || {
+            let listed = world.list(Path::new("maps")).unwrap().into_iter();
+            let listed = listed.map(|it| (it.path, it.bytes));
+            listed.collect::<Vec<_>>()
         };
-        let expected = [listed("maps/a", Some(4)), listed("maps/b", None)];
-        assert_eq!(world.list(Path::new("maps")).unwrap(), expected);
+        let expected = [("maps/a".into(), Some(4)), ("maps/b".into(), None)];
+        assert_eq!(listed(), expected);
         world.remove(Path::new("maps/a")).unwrap();
         assert!(world.remove(Path::new("maps/a")).is_err());
-        assert_eq!(world.list(Path::new("maps")).unwrap(), expected[1..]);
+        assert_eq!(listed(), expected[1..]);
         assert!(world.list(Path::new("none")).is_err());
+    }
+
+    #[test]
+    fn a_file_is_touched_only_if_its_time_is_far_away() {
+        let world = Memory::default();
+        let path = Path::new("maps/a");
+        world.insert(path, "");
+        let hour = Duration::from_secs(3600);
+        for (time, is_touched) in [
+            (SystemTime::now() - 2 * hour, true),
+            (SystemTime::now() + 2 * hour, true),
+            (SystemTime::now() - hour / 2, false),
+        ] {
+            assert!(world.set_modified(path, time));
+            world.touch(path, hour).unwrap();
+            let listed = world.list(Path::new("maps")).unwrap();
+            assert_eq!(listed[0].modified != Some(time), is_touched);
+        }
+        assert!(!world.set_modified(Path::new("none"), SystemTime::now()));
+        assert!(world.touch(Path::new("none"), hour).is_err());
     }
 
     #[test]

@@ -18,6 +18,7 @@ pub use unfinished::abandon_unfinished;
 
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 /// One thing in a folder.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,6 +27,10 @@ pub struct Listed {
     pub path: PathBuf,
     /// Size in bytes; `None` for a folder.
     pub bytes: Option<u64>,
+    /// Whether it is a symbolic link; size and time are those of what it leads to.
+    pub is_link: bool,
+    /// When it was last written or touched; `None` where the world does not know.
+    pub modified: Option<SystemTime>,
 }
 
 /// Where recipes, assets and the store are read from, and where maps go.
@@ -91,6 +96,20 @@ pub trait World: Send + Sync {
         Err(io::ErrorKind::Unsupported.into())
     }
 
+    /// Whether there is a symbolic link at `path` itself; a world without links has none.
+    fn is_link(&self, _path: &Path) -> bool {
+        false
+    }
+
+    /// Gives a file the present time, if its own is further than `after` from that, in the past or in the
+    /// future. Worlds without times do nothing.
+    ///
+    /// # Errors
+    /// Whatever the operating system says.
+    fn touch(&self, _path: &Path, _after: Duration) -> io::Result<()> {
+        Ok(())
+    }
+
     /// Removes a file, or a folder that is empty; a symbolic link is removed itself.
     ///
     /// # Errors
@@ -114,6 +133,12 @@ pub trait World: Send + Sync {
     fn notices(&self, _wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
         Err(NoticesError::new("this kind of file system sends none"))
     }
+}
+
+/// Whether two times are further apart than `most`.
+fn are_apart(one: SystemTime, other: SystemTime, most: Duration) -> bool {
+    let apart = one.duration_since(other);
+    apart.unwrap_or_else(|error| error.duration()) > most
 }
 
 /// A file that is not there yet: dropped without a commit, it leaves nothing behind.

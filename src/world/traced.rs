@@ -232,6 +232,14 @@ impl World for Traced {
         self.world.remove(path)
     }
 
+    fn is_link(&self, path: &Path) -> bool {
+        self.world.is_link(path)
+    }
+
+    fn touch(&self, path: &Path, after: Duration) -> io::Result<()> {
+        self.world.touch(path, after)
+    }
+
     fn stamp(&self, path: &Path) -> io::Result<Stamp> {
         self.world.stamp(path)
     }

@@ -118,7 +118,6 @@ fn put_in_place(mut file: NamedTempFile, path: &Path) -> io::Result<()> {
             return Ok(());
         };
         if has_folder && error.kind() == io::ErrorKind::NotFound {
-            // Whoever cleans the store removes folders that are empty.
             make_folder(path.parent())?;
             has_folder = false;
         } else if !patience.again(&error) {
@@ -129,7 +128,7 @@ fn put_in_place(mut file: NamedTempFile, path: &Path) -> io::Result<()> {
 }
 
 /// Makes a folder, with those that it lies in; no path is the working folder.
-pub(super) fn make_folder(folder: Option<&Path>) -> io::Result<()> {
+fn make_folder(folder: Option<&Path>) -> io::Result<()> {
     let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
     folder.map_or(Ok(()), |folder| {
         uninterrupted(|| fs::create_dir_all(folder))
@@ -153,12 +152,12 @@ fn keep_permissions(file: &File, replaced: &Path) -> io::Result<()> {
 /// A new file in `folder` that no sweep takes away.
 fn held_file(folder: &Path) -> io::Result<NamedTempFile> {
     for _ in 0..ATTEMPTS {
-        make_folder(Some(folder))?;
         match uninterrupted(|| temporary_file(folder)) {
             Ok(file) if is_ours(&file) => return Ok(file),
-            // Whoever cleans the store removes folders that are empty.
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-            _ => {}
+            Ok(_) => {}
+            // It may be removed again before the file is made: the store is rid of empty folders.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => make_folder(Some(folder))?,
+            Err(error) => return Err(error),
         }
     }
     Err(io::Error::other("other programs take new files away"))

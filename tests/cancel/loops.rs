@@ -100,7 +100,7 @@ impl ColumnCache for Kept {
         None
     }
 
-    fn put(&self, key: Key, _: Columns, _: f64) {
+    fn put(&self, _: &str, key: Key, _: Columns, _: f64) {
         self.0.lock().unwrap().push(key);
     }
 }

@@ -121,6 +121,10 @@ fn all_events() -> Vec<(Event, Value)> {
             },
             json!({ "event": "store_failed", "reason": "full" }),
         ),
+        (
+            Event::CacheVerified { compared: 3 },
+            json!({ "event": "cache_verified", "compared": 3 }),
+        ),
         (Event::Cancelled, json!({ "event": "cancelled" })),
     ]
 }
@@ -138,6 +142,7 @@ fn is_listed(event: &Event) -> bool {
         | Event::OutputDone { .. }
         | Event::Warning { .. }
         | Event::StoreFailed { .. }
+        | Event::CacheVerified { .. }
         | Event::Cancelled => true,
     }
 }
@@ -221,7 +226,7 @@ fn stale_files_are_told_as_events_and_as_warnings() {
     let output = place.render(&[]);
     let path = Path::new("out").join("board_normal.png");
     let expected = format!(
-        "warning: {} is from an earlier run: `board` no longer writes it\n",
+        "warning: {} is from an earlier run: `board` no longer writes it\nrecipe.ron is up to date\n",
         path.display()
     );
     assert_eq!((code(&output), stderr(&output)), (0, expected));

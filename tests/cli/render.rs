@@ -1,6 +1,8 @@
 //! `yosegi render`: its files, its options and its events.
 
 use super::*;
+use serde_json::json;
+use yosegi::key::{Key, KeyHasher};
 
 const MAPS: [&str; 3] = [
     "board_base_color.png",
@@ -41,6 +43,13 @@ fn a_second_render_says_that_all_is_up_to_date() {
         ["board/base_color", "board/normal", "plain/roughness"]
     );
     assert_eq!(lines(&second).len(), 3);
+    let told = place.render(&[]);
+    assert_eq!(stderr(&told), "recipe.ron is up to date\n");
+    assert_eq!(stdout(&told).lines().count(), 3);
+    // One map of three has to be put back.
+    fs::remove_file(place.path("out/board_normal.png")).unwrap();
+    let told = place.render(&[]);
+    assert_eq!((code(&told), stderr(&told)), (0, String::new()));
 }
 
 #[test]
@@ -144,7 +153,9 @@ fn programs_at_the_same_time_share_a_store_and_a_folder() {
     let children: Vec<_> = (0..4).map(|_| start(&place, &call)).collect();
     for child in children {
         let output = child.wait_with_output().unwrap();
-        assert_eq!((code(&output), stderr(&output)), (0, String::new()));
+        // The last ones may have found nothing to do.
+        let told = stderr(&output).replace("recipe.ron is up to date\n", "");
+        assert_eq!((code(&output), told), (0, String::new()));
     }
     assert!(place.files("out") == place.files("right"));
     assert_eq!(
@@ -187,7 +198,97 @@ fn a_map_that_is_there_already_is_warned_of_again() {
         first.contains("12 samples") && first.contains("were clamped"),
         "{first}"
     );
-    assert_eq!(stderr(&place.render(&[])), first);
+    let second = format!("{first}recipe.ron is up to date\n");
+    assert_eq!(stderr(&place.render(&[])), second);
     fs::remove_file(place.folder.path().join("out/board_height.png")).unwrap();
     assert_eq!(stderr(&place.render(&[])), first);
+}
+
+/// The entry with another payload, as one writes it who knows how entries are made.
+fn sealed(entry: &[u8], payload: &[u8]) -> Vec<u8> {
+    let text = |range| std::str::from_utf8(&entry[range]).unwrap();
+    let (key, family) = (text(72..136), text(136..152));
+    let checksum = KeyHasher::new(family.trim_end(), 2)
+        .key(Key::from_hexadecimal(key).unwrap())
+        .bytes(payload)
+        .finish();
+    let header = format!("yosegi02{checksum}{key}{family}{:016x}", payload.len());
+    [header.as_bytes(), payload].concat()
+}
+
+#[test]
+fn a_verified_render_names_what_differs_with_1_and_replaces_it() {
+    let place = Place::new(BOARD);
+    assert_eq!(code(&place.render(&[])), 0);
+    let right = place.files("out");
+    let verified = || place.render(&["--verify-cache"]);
+    let output = verified();
+    // Two structures, three maps, two plans.
+    assert_eq!(
+        (code(&output), stderr(&output)),
+        (0, "7 results were computed again and compared\n".to_owned())
+    );
+    let records = place.path("store/map");
+    let folder = fs::read_dir(records).unwrap().next().unwrap().unwrap();
+    let record = fs::read_dir(folder.path())
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap();
+    let mut entry = fs::read(record.path()).unwrap();
+    let mut payload = entry.split_off(168);
+    // The number of samples that were not finite.
+    payload[0] += 1;
+    fs::write(record.path(), sealed(&entry, &payload)).unwrap();
+    let output = verified();
+    assert_eq!(code(&output), 1);
+    let text = stderr(&output);
+    assert!(text.contains("error[cache-mismatch]: the map `"), "{text}");
+    assert!(
+        text.contains(&record.file_name().into_string().unwrap()),
+        "{text}"
+    );
+    assert_eq!(code(&verified()), 0);
+    assert!(place.files("out") == right);
+    let wrong = place.render(&["--verify-cache", "--no-cache"]);
+    assert_eq!(code(&wrong), 2);
+}
+
+#[test]
+fn a_small_store_stays_small_and_the_status_tells_its_limit() {
+    let place = Place::new(BOARD);
+    for speed in ["2", "3", "4", "5"] {
+        let speed = format!("speed={speed}");
+        let output = place.render(&["--set", &speed, "--cache-size", "80KiB"]);
+        assert_eq!((code(&output), stderr(&output)), (0, String::new()));
+    }
+    let status = [
+        "cache",
+        "status",
+        "--cache",
+        "store",
+        "--cache-size",
+        "80KiB",
+    ];
+    let json = lines(&place.call(&[&status[..], &["--json"]].concat()));
+    assert_eq!(json[0]["limit"], 80 << 10);
+    assert!(json[0]["bytes"].as_u64().unwrap() <= 80 << 10);
+    assert!(
+        (10..=20).contains(&json[0]["entries"].as_u64().unwrap()),
+        "{}",
+        json[0]
+    );
+    let text = stdout(&place.call(&status));
+    assert!(
+        text.contains(" of at most 80.0 KiB, the oldest last used "),
+        "{text}"
+    );
+    let none = place.render(&["--cache-size", "0"]);
+    assert_eq!((code(&none), stderr(&none)), (0, String::new()));
+    let json = lines(&place.call(&[&status[..], &["--json"]].concat()));
+    assert_eq!(
+        (&json[0]["entries"], &json[0]["oldest_seconds"]),
+        (&json!(0), &json!(null))
+    );
+    assert_eq!(code(&place.render(&["--cache-size", "much"])), 2);
 }

@@ -90,7 +90,7 @@ fn the_cache_is_counted_and_cleaned() {
     assert_eq!(place.names("store"), ["notes.txt"]);
     let text = stdout(&place.call(&["cache", "status", "--cache", "store"]));
     assert!(
-        text.starts_with("store holds 0 entries, 0 bytes\n"),
+        text.starts_with("store holds 0 entries, 0 bytes of at most 2.0 GiB\n"),
         "{text}"
     );
     // What was there is there again.

@@ -4,7 +4,7 @@ use super::place::{End, Outcome, STATES, State};
 use super::world::{Act, Faulty};
 use super::*;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use yosegi::world::World;
 
@@ -50,10 +50,9 @@ fn promise(act: Act, place: Where, state: State, error: Errno) -> Promise {
         // Interrupted streams are read and written again.
         (Write | Stream, _) if error == INTERRUPTED => Promise::Silent,
         // What cannot be read is missing in the store, and is painted anew in the output folder.
-        (Read | ReadStart | RealPath | List | Remove, Where::Store | Where::Output) => {
-            Promise::Silent
-        }
-        (Read | ReadStart, Where::Input) => Promise::Files,
+        (Read | Open | Stream, Where::Store) => Promise::Silent,
+        (ReadStart | RealPath | List | Remove, Where::Store | Where::Output) => Promise::Silent,
+        (Read | Open | Stream | ReadStart, Where::Input) => Promise::Files,
         // Folders whose place tells whether a file lies outside of them.
         (RealPath, Where::Input) => Promise::SilentOrFiles,
         (Create | Write | Seek | Sync | Commit, Where::Store) => Promise::Warned,
@@ -84,6 +83,7 @@ fn fail(place: &Place, number: usize, error: Errno) -> Option<(Act, Where, Promi
     let promised = promise(act, lies, state, error);
     keep(promised, &outcome, &path, error, &context);
     place.judge(outcome.end == End::Done, &context);
+    assert_eq!(place.unfinished(), [] as [PathBuf; 0], "{context}");
     place.recover(&context);
     Some((act, lies, promised))
 }

@@ -6,7 +6,9 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 mod calls;
+mod full;
 mod place;
+mod power;
 mod trace;
 mod world;
 

@@ -123,7 +123,7 @@ impl ColumnCache for Everything {
         self.0.lock().unwrap().get(key).cloned()
     }
 
-    fn put(&self, key: Key, columns: Columns, _: f64) {
+    fn put(&self, _: &str, key: Key, columns: Columns, _: f64) {
         self.0.lock().unwrap().insert(key, columns);
     }
 }

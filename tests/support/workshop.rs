@@ -77,14 +77,24 @@ impl Workshop {
         cancel: Cancel,
         hear: &(dyn Fn(&Event) + Sync),
     ) -> Run {
+        self.render_graph(&self.graph(recipe), only, cancel, hear)
+    }
+
+    /// As [`Workshop::render`], of a recipe that is read already.
+    pub(crate) fn render_graph(
+        &self,
+        graph: &Graph,
+        only: &[&str],
+        cancel: Cancel,
+        hear: &(dyn Fn(&Event) + Sync),
+    ) -> Run {
         let events = Mutex::new(vec![]);
         let listener = |event: Event| {
             hear(&event);
             events.lock().unwrap().push(event);
         };
-        let graph = self.graph(recipe);
         let result = self.engine.render(&Render {
-            graph: &graph,
+            graph,
             folder: self.folder.join("out"),
             only: only.iter().map(|name| (*name).to_owned()).collect(),
             pixels: self.size,
@@ -155,6 +165,7 @@ fn short(event: &Event) -> Option<String> {
         Event::Warning { node, message } => format!("warning of {node}: {message}"),
         Event::MapStale { path, .. } => format!("stale {}", name(path)),
         Event::StoreFailed { reason } => format!("store failed: {reason}"),
+        Event::CacheVerified { compared } => format!("compared {compared}"),
         Event::Cancelled => "cancelled".to_owned(),
         Event::Progress { .. } | Event::OutputDone { .. } => return None,
     })

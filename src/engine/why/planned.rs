@@ -141,7 +141,7 @@ impl<'a> PlannedRun<'a> {
     fn lost_map(&self, index: NodeIndex) -> Option<Cause> {
         let (name, node) = (&self.plan.graph.nodes[index].name, self.plan.keys[&index]);
         let key = self.engine.output_key(name, node, self.request.pixels);
-        let maps = self.engine.planned(&key)?.maps;
+        let maps = self.engine.planned(name, &key)?.maps;
         let path = maps.iter().find_map(|map| {
             let path = map_path(&self.request.folder, map);
             let known = self.engine.known_map(map, path.clone());
@@ -156,7 +156,13 @@ fn fate_of(output: &Output<'_>, has_record: bool) -> Fate {
         Some(known) if known.maps.iter().all(|map| map.is_there) => Fate::UpToDate,
         Some(_) => Fate::Restored,
         // Under its present plan it has been made before: some map is gone.
-        None if output.engine.planned(&output.plan_key()).is_some() => Fate::Painted,
+        None if output
+            .engine
+            .planned(output.name(), &output.plan_key())
+            .is_some() =>
+        {
+            Fate::Painted
+        }
         None if has_record => Fate::PaintedUnlessKnown,
         None => Fate::Painted,
     }

@@ -4,7 +4,9 @@
 
 use super::shown;
 use crate::engine::Engine;
+use crate::engine::content::is_plain;
 use crate::engine::plan::Plan;
+use crate::engine::store::Family;
 use crate::graph::Graph;
 use crate::key::{Key, KeyHasher};
 use petgraph::graph::NodeIndex;
@@ -70,8 +72,9 @@ impl NodeRecord {
 impl Engine {
     /// The record of the last run of a recipe.
     pub(super) fn run_record(&self, graph: &Graph) -> Option<RunRecord> {
-        let bytes = self.store.as_ref()?.get("run", &record_key(graph))?;
-        postcard::from_bytes(&bytes).ok()
+        let bytes = self.store.as_ref()?.get(Family::Run, &record_key(graph))?;
+        let record: Option<RunRecord> = postcard::from_bytes(&bytes).ok();
+        record.filter(RunRecord::is_sound)
     }
 
     /// Remembers what ran: the nodes of the plan anew, the recipe's others as they were.
@@ -104,11 +107,20 @@ impl Engine {
             return Ok(());
         }
         let bytes = postcard::to_stdvec(&record).map_err(io::Error::other)?;
-        store.put("run", &record_key(plan.graph), &bytes)
+        store.put(Family::Run, &record_key(plan.graph), &bytes)
     }
 }
 
 impl RunRecord {
+    /// Whether its texts can be shown.
+    fn is_sound(&self) -> bool {
+        let mut nodes = self.nodes.values().chain(self.outputs.values());
+        nodes.all(|node| {
+            let mut inputs = node.inputs.iter();
+            is_plain(&node.kind) && inputs.all(|it| is_plain(&it.name) && is_plain(&it.shown))
+        })
+    }
+
     /// Forgets what the recipe no longer has.
     fn forget_others(&mut self, graph: &Graph) {
         self.nodes

@@ -4,12 +4,13 @@ mod notices;
 
 use super::again::Patience;
 use super::sweep;
-use super::unfinished::{self, Unfinished};
-use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
+use super::unfinished::Unfinished;
+use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World, are_apart};
 use notices::DiskNotices;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 /// The disk.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,10 +36,11 @@ impl World for Disk {
 
     fn read_start(&self, path: &Path, length: usize) -> io::Result<Vec<u8>> {
         require_regular(path)?;
-        let mut bytes = Vec::new();
-        File::open(path)?
-            .take(length as u64)
-            .read_to_end(&mut bytes)?;
+        let file = File::open(path)?;
+        let there = usize::try_from(file.metadata()?.len()).unwrap_or(length);
+        // Room for all, and for the read that finds the end.
+        let mut bytes = Vec::with_capacity(there.min(length) + 32);
+        file.take(length as u64).read_to_end(&mut bytes)?;
         Ok(bytes)
     }
 
@@ -70,12 +72,29 @@ impl World for Disk {
             };
             if metadata.is_file() || metadata.is_dir() {
                 let bytes = metadata.is_file().then_some(metadata.len());
-                let path = entry.path();
-                listed.push(Listed { path, bytes });
+                listed.push(Listed {
+                    path: entry.path(),
+                    bytes,
+                    is_link: entry.file_type().is_ok_and(|it| it.is_symlink()),
+                    modified: metadata.modified().ok(),
+                });
             }
         }
         listed.sort();
         Ok(listed)
+    }
+
+    fn is_link(&self, path: &Path) -> bool {
+        path.is_symlink()
+    }
+
+    fn touch(&self, path: &Path, after: Duration) -> io::Result<()> {
+        let now = SystemTime::now();
+        if !are_apart(fs::metadata(path)?.modified()?, now, after) {
+            return Ok(());
+        }
+        // Some systems set times through a file that is open for writing only.
+        File::options().write(true).open(path)?.set_modified(now)
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {
@@ -107,7 +126,6 @@ fn start(path: PathBuf, aside: &Path) -> io::Result<Box<dyn PendingFile>> {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
         _ => {}
     }
-    unfinished::make_folder(path.parent())?;
     Ok(Box::new(Unfinished::new(path, aside)?))
 }
 
@@ -211,12 +229,10 @@ mod tests {
         let place = |name: &str| folder.path().join(name);
         write(&place("b"), b"four");
         write(&place("a/c"), b"");
-        let listed = |name: &str, bytes| Listed {
-            path: place(name),
-            bytes,
-        };
-        let expected = [listed("a", None), listed("b", Some(4))];
-        assert_eq!(Disk.list(folder.path()).unwrap(), expected);
+        let listed = Disk.list(folder.path()).unwrap();
+        let listed = listed.into_iter().map(|it| (it.path, it.bytes));
+        let expected = [(place("a"), None), (place("b"), Some(4))];
+        assert_eq!(listed.collect::<Vec<_>>(), expected);
         assert!(Disk.list(&place("b")).is_err());
         assert!(Disk.remove(&place("a")).is_err());
         for name in ["a/c", "a", "b"] {
@@ -230,6 +246,27 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let error = Disk.create(folder.path()).err().unwrap();
         assert_eq!(error.to_string(), "not a regular file");
+    }
+
+    #[test]
+    fn a_file_is_touched_only_if_its_time_is_far_away() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("entry");
+        write(&path, b"entry");
+        let hour = Duration::from_secs(3600);
+        let now = SystemTime::now();
+        let touched_from = |time: SystemTime| {
+            let file = File::options().write(true).open(&path).unwrap();
+            file.set_modified(time).unwrap();
+            Disk.touch(&path, hour).unwrap();
+            let [listed] = &Disk.list(folder.path()).unwrap()[..] else {
+                panic!("one file was written")
+            };
+            listed.modified.unwrap() != time
+        };
+        assert!(!touched_from(now - hour / 2) && !touched_from(now + hour / 2));
+        assert!(touched_from(now - 2 * hour) && touched_from(now + 2 * hour));
+        assert!(Disk.touch(&folder.path().join("none"), hour).is_err());
     }
 
     #[cfg(unix)]
@@ -260,7 +297,11 @@ mod tests {
         for bytes in [b"one", b"two"] {
             write(&place("second"), bytes);
             assert_eq!(fs::read(place("real/map.png")).unwrap(), bytes);
-            assert!(place("first").is_symlink() && place("second").is_symlink());
+            assert!(Disk.is_link(&place("first")) && Disk.is_link(&place("second")));
+            assert!(!Disk.is_link(&place("real/map.png")));
+            let listed = Disk.list(folder.path()).unwrap();
+            let links = listed.iter().map(|it| it.is_link);
+            assert_eq!(links.collect::<Vec<_>>(), [true, false, true]);
         }
         symlink("loop", place("loop")).unwrap();
         let error = Disk.create(&place("loop")).err().unwrap();

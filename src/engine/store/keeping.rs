@@ -1,0 +1,194 @@
+//! Keeping house in the store: what lies in it, and removing it.
+
+use super::family::Family;
+use super::{UNFINISHED, entry};
+use crate::world::{Listed, World};
+use serde::Serialize;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+/// A file half-written is left by a program that was killed if nothing was written to it for so long.
+const ABANDONED: Duration = Duration::from_secs(3600);
+
+/// The entries of one family in a store.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct StoreFamily {
+    /// `structure`, `map` (what is known of a map), `file` (copies of maps), `plan` or `run`.
+    pub family: &'static str,
+    /// How many there are.
+    pub entries: usize,
+    /// Their bytes.
+    pub bytes: u64,
+    /// For how many seconds the one has not been used that was used longest ago, to within some hours;
+    /// `None` if there are none.
+    pub oldest_seconds: Option<u64>,
+}
+
+/// A file in the store with the name of an entry, or of one that was never finished.
+pub(super) struct Kept {
+    pub(super) path: PathBuf,
+    pub(super) bytes: u64,
+    /// When it was last written or used.
+    pub(super) modified: Option<SystemTime>,
+}
+
+/// Counts the entries of the store in `folder`; a folder that is not there holds none.
+///
+/// # Errors
+/// Whatever the operating system says.
+pub fn store_status(world: &dyn World, folder: &Path) -> io::Result<Vec<StoreFamily>> {
+    let status = |family: Family| {
+        let entries = entries(world, &folder.join(family.name()))?;
+        Ok(family_of(family, &entries))
+    };
+    Family::ALL.into_iter().map(status).collect()
+}
+
+/// Removes every entry of the store in `folder`, and the folders that are empty then; says what was
+/// removed. Whatever is not named and begun as an entry stays. Runs that use the store meanwhile miss what
+/// is gone and are not harmed.
+///
+/// # Errors
+/// The first error of the operating system; what could be removed is removed.
+pub fn clean_store(world: &dyn World, folder: &Path) -> io::Result<Vec<StoreFamily>> {
+    let mut removed = vec![];
+    let mut result = Ok(());
+    for family in Family::ALL {
+        let place = folder.join(family.name());
+        let (gone, failed): (Vec<_>, Vec<_>) = entries(world, &place)?
+            .into_iter()
+            .map(|entry| (remove(world, &entry.path), entry))
+            .partition(|(removed, _)| removed.is_ok());
+        for (error, _) in failed {
+            result = result.and(error);
+        }
+        let gone: Vec<Kept> = gone.into_iter().map(|(_, entry)| entry).collect();
+        removed.push(family_of(family, &gone));
+        remove_empty(world, &place);
+    }
+    if !world.is_link(folder) {
+        let unfinished = folder.join(UNFINISHED);
+        world.sweep(&unfinished);
+        let _ = world.remove(&unfinished);
+        // Holds other things, or is in use: then it stays.
+        let _ = world.remove(folder);
+    }
+    result.map(|()| removed)
+}
+
+/// Every file in the store that counts; folders that cannot be listed hold none.
+pub(super) fn kept(world: &dyn World, folder: &Path) -> Vec<Kept> {
+    let families = Family::ALL.into_iter();
+    let places = families.map(|family| folder.join(family.name()));
+    let folders = places.flat_map(|place| numbered(world, &place).unwrap_or_default());
+    let files = folders.flat_map(|folder| list(world, &folder).unwrap_or_default());
+    files.filter_map(Kept::new).collect()
+}
+
+/// Removes what another process may have removed as well.
+pub(super) fn remove(world: &dyn World, path: &Path) -> io::Result<()> {
+    match world.remove(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        removed => removed,
+    }
+}
+
+impl Kept {
+    /// `None` if it is something else by its name, or no plain file.
+    fn new(listed: Listed) -> Option<Kept> {
+        let named = is_half(&listed.path) || has_digits(&listed.path, 62);
+        let bytes = listed.bytes.filter(|_| named && !listed.is_link)?;
+        Some(Kept {
+            path: listed.path,
+            bytes,
+            modified: listed.modified,
+        })
+    }
+
+    /// Whether its time is further in the future than `by`.
+    pub(super) fn is_ahead(&self, now: SystemTime, by: Duration) -> bool {
+        let ahead = self.modified.and_then(|it| it.duration_since(now).ok());
+        ahead.is_some_and(|ahead| ahead > by)
+    }
+
+    /// Whether it may be evicted: it is ours, and nobody is writing it.
+    pub(super) fn may_go(&self, world: &dyn World, now: SystemTime) -> bool {
+        if is_half(&self.path) {
+            return self.is_ahead(now, ABANDONED) || self.age(now) > ABANDONED;
+        }
+        entry::is_ours(world, &self.path)
+    }
+
+    /// How long ago it was used; no time at all if that lies in the future.
+    fn age(&self, now: SystemTime) -> Duration {
+        let age = self.modified.and_then(|it| now.duration_since(it).ok());
+        age.unwrap_or_default()
+    }
+}
+
+fn family_of(family: Family, entries: &[Kept]) -> StoreFamily {
+    let now = SystemTime::now();
+    let ages = entries.iter().map(|entry| entry.age(now).as_secs());
+    StoreFamily {
+        family: family.name(),
+        entries: entries.len(),
+        bytes: entries
+            .iter()
+            .fold(0, |sum: u64, entry| sum.saturating_add(entry.bytes)),
+        oldest_seconds: ages.max(),
+    }
+}
+
+/// The files of a family: entries, and what programs that were killed have left half-written.
+fn entries(world: &dyn World, family: &Path) -> io::Result<Vec<Kept>> {
+    let mut entries = vec![];
+    for folder in numbered(world, family)? {
+        let files = list(world, &folder)?.into_iter().filter_map(Kept::new);
+        let is_ours = |file: &Kept| is_half(&file.path) || entry::is_ours(world, &file.path);
+        entries.extend(files.filter(is_ours));
+    }
+    Ok(entries)
+}
+
+/// The folders of a family.
+fn numbered(world: &dyn World, family: &Path) -> io::Result<Vec<PathBuf>> {
+    if world.is_link(family) {
+        return Ok(vec![]);
+    }
+    let folders = list(world, family)?.into_iter();
+    let folders = folders.filter(|it| it.bytes.is_none() && !it.is_link);
+    let paths = folders.map(|folder| folder.path);
+    Ok(paths.filter(|path| has_digits(path, 2)).collect())
+}
+
+/// What is in a folder, or would be if it were there and one.
+fn list(world: &dyn World, folder: &Path) -> io::Result<Vec<Listed>> {
+    match world.list(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(vec![]),
+        listed => listed,
+    }
+}
+
+fn is_half(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    name.is_some_and(|name| name.starts_with(".yosegi-") && name.ends_with(".part"))
+}
+
+/// Whether the name of a path is `count` hexadecimal digits.
+fn has_digits(path: &Path, count: usize) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    let is_digit = |byte: u8| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte);
+    name.is_some_and(|name| name.len() == count && name.bytes().all(is_digit))
+}
+
+/// Removes the folders of a family that are empty.
+fn remove_empty(world: &dyn World, family: &Path) {
+    for folder in numbered(world, family).unwrap_or_default() {
+        // A folder that is not empty is refused by the system, and stays.
+        let _ = world.remove(&folder);
+    }
+    if !world.is_link(family) {
+        let _ = world.remove(family);
+    }
+}
