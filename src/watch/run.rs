@@ -5,7 +5,7 @@ use super::report::{Collector, Failed};
 use super::{Audience, Followed, Rendered, Times, Told};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::engine::{Cancel, Engine, Event, Render, RunError};
-use crate::graph::{Graph, load};
+use crate::graph::{Graph, load_until};
 use crate::world::{Trace, Traced, World};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -113,9 +113,11 @@ impl Run {
             self.trace.clone(),
             on_new,
         ));
-        let loaded = match load(&*inputs, &self.followed.recipe, &self.followed.settings) {
-            Ok(loaded) => loaded,
-            Err(diagnostics) => return Outcome::Failed(Failed::Loading(diagnostics)),
+        let (recipe, settings) = (&self.followed.recipe, &self.followed.settings);
+        let loaded = match load_until(&*inputs, recipe, settings, &self.switches.cancel) {
+            Some(Ok(loaded)) => loaded,
+            Some(Err(diagnostics)) => return Outcome::Failed(Failed::Loading(diagnostics)),
+            None => return Outcome::Stopped,
         };
         let loading = start.elapsed();
         let collector = Collector::default();

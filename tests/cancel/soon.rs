@@ -209,16 +209,20 @@ fn cancelled(run: impl FnOnce(&Cancel) -> bool + Send, after: Duration) -> Optio
     })
 }
 
+/// An engine that has to do everything again in each run.
+fn engine(folder: &Path) -> Engine {
+    let options = Options {
+        threads: Some(2),
+        memory: 0,
+        store: Some(folder.join("store")),
+        ..Options::default()
+    };
+    Engine::new(Arc::new(Disk), options).unwrap()
+}
+
 impl Case {
     /// Whether a run came to its end.
-    fn run(&self, folder: &Path, cancel: &Cancel) -> bool {
-        let options = Options {
-            threads: Some(2),
-            memory: 0,
-            store: Some(folder.join("store")),
-            ..Options::default()
-        };
-        let engine = Engine::new(Arc::new(Disk), options).unwrap();
+    fn run(&self, engine: &Engine, folder: &Path, cancel: &Cancel) -> bool {
         let result = engine.render(&Render {
             graph: &self.graph,
             folder: folder.join("out"),
@@ -240,14 +244,14 @@ impl Case {
     }
 
     /// How long a run takes, but not much more than is asked for.
-    fn length(&self, folder: &Path) -> Duration {
+    fn length(&self, engine: &Engine, folder: &Path) -> Duration {
         let whole = Duration::from_secs(3600);
         if self.there != There::Nothing {
-            assert!(cancelled(|cancel| self.run(folder, cancel), whole).is_none());
+            assert!(cancelled(|cancel| self.run(engine, folder, cancel), whole).is_none());
             self.prepare(folder);
         }
         let start = Instant::now();
-        let _ = cancelled(|cancel| self.run(folder, cancel), LONGEST);
+        let _ = cancelled(|cancel| self.run(engine, folder, cancel), LONGEST);
         start.elapsed().min(LONGEST)
     }
 }
@@ -302,12 +306,13 @@ fn soon_after_it_was_cancelled_a_run_has_ended() {
         if case.name.contains(&wanted) {
             let place = tempfile::tempdir().unwrap();
             let place = place.path();
-            let length = case.length(place);
+            let engine = engine(place);
+            let length = case.length(&engine, place);
             measure(
                 &case.name,
                 length,
                 || case.prepare(place),
-                |cancel| case.run(place, cancel),
+                |cancel| case.run(&engine, place, cancel),
             );
         }
     }
