@@ -1,33 +1,40 @@
-//! Sizes in bytes, as people write them.
+//! Sizes in bytes, as people write and read them.
 
 /// Units with their numbers of bytes, the smallest first.
-const UNITS: [(&str, u64); 5] = [
-    ("B", 1),
+const UNITS: [(&str, u64); 4] = [
     ("KiB", 1 << 10),
     ("MiB", 1 << 20),
     ("GiB", 1 << 30),
     ("TiB", 1 << 40),
 ];
 
+/// More bytes than anything has.
+const MOST: f64 = 9e15;
+
 /// A size such as `64MiB` or `1.5 GiB`; a number alone is bytes.
 ///
 /// # Errors
 /// What a size looks like.
 pub(super) fn parse(text: &str) -> Result<u64, String> {
-    let expected = || format!("expected a size such as 64MiB or 2GiB, found `{text}`");
-    let digits = text.trim_end_matches(|letter: char| letter.is_ascii_alphabetic());
-    let unit = match &text[digits.len()..] {
-        "" => "B",
-        unit => unit,
-    };
-    let is_unit = |(name, _): &&(&str, u64)| name.eq_ignore_ascii_case(unit);
-    let (_, bytes) = UNITS.iter().find(is_unit).ok_or_else(expected)?;
-    let number: f64 = digits.trim().parse().map_err(|_| expected())?;
-    if !number.is_finite() || number < 0.0 {
-        return Err(expected());
+    let mut units = UNITS.iter().copied().chain([("", 1)]);
+    let found = units.find_map(|(unit, bytes)| Some((text.strip_suffix(unit)?.trim(), bytes)));
+    let number = found.and_then(|(number, unit)| {
+        let number: f64 = number.parse().ok()?;
+        let bytes = number * unit as f64;
+        (0.0..=MOST).contains(&bytes).then_some(bytes as u64)
+    });
+    number.ok_or_else(|| {
+        format!("expected a number of bytes, for example 500000000, 64MiB or 2GiB, found `{text}`")
+    })
+}
+
+/// A number of bytes, in a unit that fits it.
+pub(super) fn shown(bytes: u64) -> String {
+    let unit = UNITS.iter().rev().find(|(_, size)| bytes >= *size);
+    match unit {
+        None => format!("{bytes} bytes"),
+        Some((unit, size)) => format!("{:.1} {unit}", bytes as f64 / *size as f64),
     }
-    // Saturates beyond what there is.
-    Ok((number * *bytes as f64) as u64)
 }
 
 #[cfg(test)]
@@ -35,18 +42,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_have_units() {
-        let cases = [
+    fn sizes_are_numbers_with_units() {
+        for (text, expected) in [
             ("0", 0),
+            ("4096", 4096),
             ("64MiB", 64 << 20),
             ("1.5 GiB", 3 << 29),
-            ("7kib", 7 << 10),
-        ];
-        for (text, bytes) in cases {
-            assert_eq!(parse(text), Ok(bytes), "{text}");
+            ("2KiB", 2048),
+            ("1TiB", 1 << 40),
+        ] {
+            assert_eq!(parse(text), Ok(expected));
         }
-        for text in ["", "MiB", "-1", "nan", "64 MB", "1e"] {
-            assert!(parse(text).is_err(), "{text}");
+        for wrong in ["", "MiB", "-1", "64 mb", "NaN", "inf", "1e300", "9000TiB"] {
+            let problem = parse(wrong).unwrap_err();
+            assert!(problem.ends_with(&format!("`{wrong}`")), "{problem}");
         }
+    }
+
+    #[test]
+    fn sizes_have_a_unit_that_fits() {
+        let sizes = [0, 1023, 1024, 1536 << 10, 3 << 40].map(shown);
+        assert_eq!(
+            sizes,
+            ["0 bytes", "1023 bytes", "1.0 KiB", "1.5 MiB", "3.0 TiB"]
+        );
     }
 }

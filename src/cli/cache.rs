@@ -1,7 +1,7 @@
 //! `yosegi cache`: what the store of earlier results holds.
 
 use super::options::{LimitArguments, default_store};
-use super::{Exit, report};
+use super::{Exit, bytes, report};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use yosegi::engine::{StoreFamily, clean_store, store_status};
@@ -112,20 +112,20 @@ fn print_text(counted: &Counted<'_>) {
     let verb = counted.limit.map_or("is rid of", |_| "holds");
     let most = counted
         .limit
-        .map(|limit| format!(" of at most {}", size(limit)));
+        .map(|limit| format!(" of at most {}", bytes::shown(limit)));
     let oldest = counted.oldest_seconds;
     let oldest = oldest.map(|it| format!(", the oldest last used {} ago", age(it)));
     report::line(&format!(
         "{} {verb} {} entries, {}{}{}",
         counted.folder.display(),
         counted.entries,
-        size(counted.bytes),
+        bytes::shown(counted.bytes),
         most.unwrap_or_default(),
         oldest.unwrap_or_default()
     ));
     for family in counted.families {
         let (name, entries) = (family.family, family.entries);
-        let bytes = size(family.bytes);
+        let bytes = bytes::shown(family.bytes);
         report::line(&format!("  {name:10} {entries:>8}  {bytes:>10}"));
     }
 }
@@ -140,23 +140,6 @@ fn age(seconds: u64) -> String {
     }
 }
 
-/// A number of bytes, in a unit that fits it.
-fn size(bytes: u64) -> String {
-    const UNITS: [&str; 4] = ["KiB", "MiB", "GiB", "TiB"];
-    let mut size = bytes as f64;
-    let mut unit = "bytes";
-    for larger in UNITS {
-        if size < 1024.0 {
-            break;
-        }
-        (size, unit) = (size / 1024.0, larger);
-    }
-    match unit {
-        "bytes" => format!("{bytes} bytes"),
-        _ => format!("{size:.1} {unit}"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -165,14 +148,5 @@ mod tests {
     fn ages_have_a_unit_that_fits() {
         let ages = [0, 119, 120, 7199, 7200, 172_800].map(age);
         assert_eq!(ages, ["0 s", "119 s", "2 min", "119 min", "2 h", "2 days"]);
-    }
-
-    #[test]
-    fn sizes_have_a_unit_that_fits() {
-        let sizes = [0, 1023, 1024, 1536 << 10, 3 << 40].map(size);
-        assert_eq!(
-            sizes,
-            ["0 bytes", "1023 bytes", "1.0 KiB", "1.5 MiB", "3.0 TiB"]
-        );
     }
 }

@@ -1,6 +1,6 @@
 //! Options that several commands have: threads, store, sizes and limits.
 
-use super::{Exit, report};
+use super::{Exit, bytes, report};
 use clap::{Args, ValueEnum};
 use fearless_simd::Level;
 use std::path::PathBuf;
@@ -85,7 +85,7 @@ pub(super) struct StoreArguments {
 #[derive(Args)]
 pub(super) struct LimitArguments {
     /// Most bytes of the store: a number, or one with KiB, MiB, GiB or TiB; the entries used longest ago go first.
-    #[arg(long = "cache-size", value_name = "SIZE", default_value = "2GiB", value_parser = parse_bytes)]
+    #[arg(long = "cache-size", value_name = "SIZE", default_value = "2GiB", value_parser = bytes::parse)]
     pub(super) bytes: u64,
 }
 
@@ -149,27 +149,6 @@ pub(super) fn default_store() -> Option<PathBuf> {
 }
 
 /// A number of bytes: `64MiB`, `1.5 GiB`, `0`.
-fn parse_bytes(text: &str) -> Result<u64, String> {
-    const UNITS: [(&str, u64); 5] = [
-        ("KiB", 1 << 10),
-        ("MiB", 1 << 20),
-        ("GiB", 1 << 30),
-        ("TiB", 1 << 40),
-        ("", 1),
-    ];
-    let found = UNITS
-        .iter()
-        .find_map(|(unit, bytes)| Some((text.strip_suffix(unit)?.trim(), *bytes)));
-    let number = found.and_then(|(number, unit)| {
-        let number: f64 = number.parse().ok()?;
-        let bytes = number * unit as f64;
-        (0.0..=9e15).contains(&bytes).then_some(bytes as u64)
-    });
-    number.ok_or_else(|| {
-        format!("expected a number of bytes, for example 500000000, 64MiB or 2GiB, found `{text}`")
-    })
-}
-
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| match text.trim().parse() {
         Ok(side) if (1..=65_536).contains(&side) => Ok(side),
@@ -181,30 +160,4 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
         .split_once(['x', 'X'])
         .ok_or("expected WxH, for example 1024x512")?;
     Ok([side(width)?, side(height)?])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sizes_of_the_store_are_numbers_with_units() {
-        for (text, expected) in [
-            ("0", 0),
-            ("4096", 4096),
-            ("64MiB", 64 << 20),
-            ("1.5 GiB", 3 << 29),
-            ("2KiB", 2048),
-            ("1TiB", 1 << 40),
-        ] {
-            assert_eq!(parse_bytes(text), Ok(expected));
-        }
-        for wrong in ["", "MiB", "-1", "64 mb", "NaN", "inf", "1e300", "9000TiB"] {
-            assert!(
-                parse_bytes(wrong)
-                    .unwrap_err()
-                    .ends_with(&format!("`{wrong}`"))
-            );
-        }
-    }
 }
