@@ -2,6 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 mod exits;
+#[cfg(unix)]
+#[path = "../support/signals.rs"]
+mod heard;
 mod json;
 mod places;
 mod render;

@@ -1,5 +1,6 @@
 //! Signals: the run stops, nothing is torn or left over, and the exit code says which it was.
 
+use super::heard::heard;
 use super::*;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command as Process};
@@ -7,8 +8,6 @@ use std::time::{Duration, Instant};
 
 /// What a hang would exceed.
 const LONG: Duration = Duration::from_secs(60);
-
-const SIGNALS: [(&str, i32); 3] = [("INT", 130), ("TERM", 143), ("HUP", 129)];
 
 /// Takes minutes.
 const LARGE: [&str; 8] = [
@@ -73,10 +72,10 @@ fn start_large(place: &Place) -> Child {
 #[test]
 fn a_signal_leaves_the_old_maps_and_nothing_else() {
     let (place, old) = rendered();
-    for (signal, expected) in SIGNALS {
+    for (signal, number) in heard() {
         let child = start_large(&place);
         send(signal, &child);
-        assert_eq!(end(child), expected, "{signal}");
+        assert_eq!(end(child), 128 + number, "{signal}");
         assert!(place.files("out") == old, "{signal}");
         assert!(place.names("store/unfinished").is_empty(), "{signal}");
     }
@@ -86,14 +85,14 @@ fn a_signal_leaves_the_old_maps_and_nothing_else() {
 
 #[test]
 fn a_watch_that_waits_ends_by_every_signal() {
-    for (signal, expected) in SIGNALS {
+    for (signal, number) in heard() {
         let place = Place::new(BOARD);
         let child = start(&place, &["watch", "recipe.ron", "--cache", "store"]);
         wait_until("the maps", || {
             place.names("out").len() == 3 && !is_writing(&place)
         });
         send(signal, &child);
-        assert_eq!(end(child), expected, "{signal}");
+        assert_eq!(end(child), 128 + number, "{signal}");
         assert_eq!(place.names("out").len(), 3, "{signal}");
         assert!(place.names("store/unfinished").is_empty(), "{signal}");
     }
@@ -106,17 +105,18 @@ fn an_interrupt_is_the_last_event() {
     let mut child = start(&place, &[&LARGE[..], &options].concat());
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     assert!(lines.any(|line| line.unwrap().contains("\"progress\"")));
-    send("INT", &child);
+    let (signal, number) = heard()[0];
+    send(signal, &child);
     let last = lines.map(Result::unwrap).last().unwrap();
     assert!(last.contains("\"cancelled\""), "{last}");
-    assert_eq!(end(child), 130);
+    assert_eq!(end(child), 128 + number);
     assert!(place.names("out").is_empty());
 }
 
 #[test]
 fn a_second_signal_ends_at_once_and_tears_nothing() {
     let (place, old) = rendered();
-    for (signal, expected) in SIGNALS {
+    for (signal, number) in heard() {
         let child = start_large(&place);
         send(signal, &child);
         // It may have ended already.
@@ -124,7 +124,7 @@ fn a_second_signal_ends_at_once_and_tears_nothing() {
             .args([&format!("-{signal}"), &child.id().to_string()])
             .stderr(Stdio::null())
             .status();
-        assert_eq!(end(child), expected, "{signal}");
+        assert_eq!(end(child), 128 + number, "{signal}");
         assert!(place.files("out") == old, "{signal}");
     }
 }
@@ -144,8 +144,9 @@ fn a_run_that_cannot_stop_is_ended_and_leaves_nothing() {
     drop(process);
     wait_until("the first write", || is_writing(&place));
     std::thread::sleep(Duration::from_millis(300));
-    send("INT", &child);
-    assert_eq!(end(child), 130);
+    let (signal, number) = heard()[0];
+    send(signal, &child);
+    assert_eq!(end(child), 128 + number);
     assert!(place.files("out") == old);
     drop(reader);
 }

@@ -6,6 +6,8 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+#[path = "../support/signals.rs"]
+mod heard;
 mod place;
 mod readers;
 mod renders;

@@ -90,7 +90,7 @@ fn replace(format: MapFormat, replacements: u64) -> u64 {
 
 #[test]
 fn a_reader_never_sees_half_a_map() {
-    assert!(campaign(800) > 0);
+    assert!(campaign(400) > 0);
 }
 
 #[test]
