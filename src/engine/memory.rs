@@ -8,7 +8,7 @@ use crate::field::{ColumnCache, Columns};
 use crate::key::Key;
 use crate::value::Value;
 use std::collections::{BTreeSet, HashMap};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A structure with the key of its content.
 #[derive(Clone, Debug)]
@@ -37,6 +37,48 @@ struct State {
     ranks: BTreeSet<(u64, Key)>,
     bytes: usize,
     clock: u64,
+    spare: Spare,
+}
+
+/// Dropped columns that wait to be used again. If each were given back to the system's allocator, what is
+/// allocated for a moment would settle in their places, and a long session would grow.
+#[derive(Debug, Default)]
+struct Spare {
+    columns: Vec<Vec<f32>>,
+    bytes: usize,
+}
+
+/// Bytes of dropped columns that are kept, at most.
+const SPARE_BYTES: usize = 4 << 20;
+
+impl Spare {
+    fn put(&mut self, mut dropped: Columns) {
+        // Someone may still be reading them.
+        for column in Arc::get_mut(&mut dropped).into_iter().flatten() {
+            let bytes = column_bytes(column);
+            if self.bytes + bytes <= SPARE_BYTES {
+                self.bytes += bytes;
+                self.columns.push(std::mem::take(column));
+            }
+        }
+    }
+
+    /// A column with room for `length` values and not much more.
+    fn take(&mut self, length: usize) -> Option<Vec<f32>> {
+        let fits = |column: &Vec<f32>| {
+            let room = column.capacity();
+            room >= length && room - length <= length / 8
+        };
+        let place = self.columns.iter().position(fits)?;
+        let mut column = self.columns.swap_remove(place);
+        self.bytes -= column_bytes(&column);
+        column.clear();
+        Some(column)
+    }
+}
+
+fn column_bytes(column: &Vec<f32>) -> usize {
+    column.capacity() * size_of::<f32>()
 }
 
 #[derive(Debug)]
@@ -112,8 +154,13 @@ impl ColumnCache for Memory {
         }
     }
 
+    fn column(&self, length: usize) -> Vec<f32> {
+        let spare = self.lock().spare.take(length);
+        spare.unwrap_or_else(|| Vec::with_capacity(length))
+    }
+
     fn put(&self, _: &str, key: Key, columns: Columns, nanoseconds: f64) {
-        let bytes = columns.iter().map(|column| size_of_val(&column[..])).sum();
+        let bytes = columns.iter().map(column_bytes).sum();
         self.put_content(key, Content::Columns(columns), bytes, nanoseconds);
     }
 }
@@ -155,6 +202,9 @@ impl State {
         if let Some(entry) = self.entries.remove(key) {
             self.ranks.remove(&(entry.rank, *key));
             self.bytes -= entry.bytes;
+            if let Content::Columns(columns) = entry.content {
+                self.spare.put(columns);
+            }
         }
     }
 }
@@ -184,6 +234,24 @@ mod tests {
             Some(1.0)
         );
         assert!(memory.bytes() <= 3 * 1024);
+    }
+
+    #[test]
+    fn dropped_columns_are_used_again_unless_someone_reads_them() {
+        let memory = Memory::new(1024);
+        memory.put("node", key("first"), columns(1.0), 1.0);
+        let place = memory.get(&key("first")).unwrap()[0].as_ptr();
+        memory.put("node", key("second"), columns(2.0), 1.0);
+        assert!(memory.get(&key("first")).is_none());
+        // Too large or too small for it.
+        let unfit = [257, 200].map(|length| memory.column(length));
+        assert!(unfit.iter().all(|column| column.as_ptr() != place));
+        let again = memory.column(250);
+        assert_eq!((again.as_ptr(), again.len()), (place, 0));
+        let read = memory.get(&key("second")).unwrap();
+        memory.put("node", key("third"), columns(3.0), 1.0);
+        let other = memory.column(256);
+        assert!(other.as_ptr() != read[0].as_ptr());
     }
 
     #[test]

@@ -25,6 +25,11 @@ pub trait ColumnCache: Send + Sync {
     /// The columns stored under `key`.
     fn get(&self, key: &Key) -> Option<Columns>;
 
+    /// An empty column with room for `length` values, for [`ColumnCache::put`].
+    fn column(&self, length: usize) -> Vec<f32> {
+        Vec::with_capacity(length)
+    }
+
     /// Stores columns of `node` that took about `nanoseconds` to compute.
     fn put(&self, node: &str, key: Key, columns: Columns, nanoseconds: f64);
 }
@@ -320,17 +325,15 @@ fn store(scratch: &Scratch, step: &KernelStep, key: Key, context: &RunContext<'_
         // The columns may be half computed.
         return;
     }
-    let columns: Columns = step
-        .outputs
-        .iter()
-        .map(|slot| scratch.slots[*slot].clone())
-        .collect();
-    if let Some(cache) = context.cache {
-        cache.put(
-            &step.node,
-            key,
-            columns,
-            f64::from(step.kernel.nanoseconds()) * padded as f64,
-        );
-    }
+    let Some(cache) = context.cache else {
+        return;
+    };
+    let copy = |slot: &usize| {
+        let mut column = cache.column(scratch.slots[*slot].len());
+        column.extend_from_slice(&scratch.slots[*slot]);
+        column
+    };
+    let columns: Columns = step.outputs.iter().map(copy).collect();
+    let nanoseconds = f64::from(step.kernel.nanoseconds()) * padded as f64;
+    cache.put(&step.node, key, columns, nanoseconds);
 }

@@ -17,7 +17,7 @@ const LARGE: [&str; 8] = [
     "--only",
     "board",
     "--size",
-    "6000x6000",
+    "12000x12000",
     "--threads",
     "2",
 ];
@@ -82,6 +82,21 @@ fn a_signal_leaves_the_old_maps_and_nothing_else() {
     }
     assert_eq!(code(&place.render(&[])), 0);
     assert!(place.files("out") == old);
+}
+
+#[test]
+fn a_watch_that_waits_ends_by_every_signal() {
+    for (signal, expected) in SIGNALS {
+        let place = Place::new(BOARD);
+        let child = start(&place, &["watch", "recipe.ron", "--cache", "store"]);
+        wait_until("the maps", || {
+            place.names("out").len() == 3 && !is_writing(&place)
+        });
+        send(signal, &child);
+        assert_eq!(end(child), expected, "{signal}");
+        assert_eq!(place.names("out").len(), 3, "{signal}");
+        assert!(place.names("store/unfinished").is_empty(), "{signal}");
+    }
 }
 
 #[test]

@@ -44,14 +44,17 @@ fn place_of(place: &Place, path: &Path) -> Where {
 /// The table of outcomes.
 fn promise(act: Act, place: Where, state: State, error: Errno) -> Promise {
     use Act::{
-        Commit, Create, List, Open, Read, ReadStart, RealPath, Remove, Seek, Stream, Sync, Write,
+        Commit, Create, List, Open, Read, ReadStart, RealPath, Remove, Seek, Stream, Sync, Touch,
+        Write,
     };
     match (act, place) {
         // Interrupted streams are read and written again.
         (Write | Stream, _) if error == INTERRUPTED => Promise::Silent,
         // What cannot be read is missing in the store, and is painted anew in the output folder.
         (Read | Open | Stream, Where::Store) => Promise::Silent,
-        (ReadStart | RealPath | List | Remove, Where::Store | Where::Output) => Promise::Silent,
+        (ReadStart | RealPath | List | Remove | Touch, Where::Store | Where::Output) => {
+            Promise::Silent
+        }
         (Read | Open | Stream | ReadStart, Where::Input) => Promise::Files,
         // Folders whose place tells whether a file lies outside of them.
         (RealPath, Where::Input) => Promise::SilentOrFiles,

@@ -193,6 +193,11 @@ impl Place {
 
     /// Renders the recipe through `world`, with one thread, so that operations have an order.
     pub(crate) fn render(&self, world: &Arc<dyn World>, store: &str) -> Outcome {
+        self.render_as(world, store, true)
+    }
+
+    /// As [`Place::render`], with maps that need not be `durable`.
+    pub(crate) fn render_as(&self, world: &Arc<dyn World>, store: &str, durable: bool) -> Outcome {
         let heard = Heard::default();
         let loaded = match load(&**world, &self.path("recipe.ron"), &Settings::default()) {
             Ok(loaded) => loaded,
@@ -208,6 +213,7 @@ impl Place {
             threads: Some(1),
             store: Some(self.path(store)),
             memory: 0,
+            durable,
             ..Options::default()
         };
         let engine = Engine::new(Arc::clone(world), options).unwrap();

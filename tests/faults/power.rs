@@ -57,6 +57,10 @@ impl World for Forgetful {
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
         Disk.list(folder)
     }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        Disk.remove(path)
+    }
 }
 
 impl Write for ForgetfulFile {
@@ -131,5 +135,24 @@ fn a_loss_of_power_leaves_old_or_new_maps_and_at_worst_an_empty_store() {
             fs::remove_dir_all(place.path("out")).unwrap();
             place.recover(&context);
         }
+    }
+}
+
+#[test]
+fn maps_that_need_not_be_durable_do_not_wait_for_the_disk() {
+    for state in [State::Cold, State::Warm] {
+        let place = Place::new(CASES[0], state);
+        place.reset();
+        let world = Forgetful::default();
+        let shared: Arc<dyn World> = Arc::new(world.clone());
+        assert_eq!(place.render_as(&shared, "store", false).end, End::Done);
+        let unsynced = world.unsynced.lock().unwrap();
+        for map in place.case.maps {
+            assert!(
+                unsynced.contains(&place.path("out").join(map)),
+                "{state:?}: {map}"
+            );
+        }
+        place.judge(true, "not durable");
     }
 }

@@ -4,6 +4,7 @@ use super::Errno;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 use yosegi::world::{Disk, Listed, PendingFile, World};
 
 /// What is done to files.
@@ -23,6 +24,8 @@ pub(crate) enum Act {
     Commit,
     List,
     Remove,
+    /// A new time for a file.
+    Touch,
 }
 
 /// An operation: what is done, and to which file.
@@ -110,6 +113,15 @@ impl World for Faulty {
     fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
         self.step(Act::List, folder)?;
         Disk.list(folder)
+    }
+
+    fn is_link(&self, path: &Path) -> bool {
+        Disk.is_link(path)
+    }
+
+    fn touch(&self, path: &Path, after: Duration) -> io::Result<()> {
+        self.step(Act::Touch, path)?;
+        Disk.touch(path, after)
     }
 
     fn remove(&self, path: &Path) -> io::Result<()> {

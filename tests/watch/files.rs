@@ -89,11 +89,11 @@ fn what_is_no_longer_read_is_no_longer_followed() {
         picture(&folder.join("new.png"), 0x020202);
         fs::write(folder.join("recipe.ron"), shows("old.png")).unwrap();
     });
-    assert!(desk.shows(0x010101));
-    desk.save(&shows("new.png"));
-    assert!(desk.shows(0x020202));
     let first = desk.wait_for_render(0);
+    assert_eq!(desk.colour(), Some(0x010101));
+    desk.save(&shows("new.png"));
     let told = desk.wait_for_render(first + 1) + 1;
+    assert_eq!(desk.colour(), Some(0x020202));
     picture(&desk.at("old.png"), 0x030303);
     pause(300);
     assert_eq!(desk.told().len(), told);
@@ -148,8 +148,9 @@ fn maps_in_the_folder_of_the_recipe_start_nothing() {
     let desk = Desk::with(setup, |folder| {
         fs::write(folder.join("recipe.ron"), recipe(1)).unwrap();
     });
-    assert!(desk.shows_at("", 1));
+    let first = desk.wait_for_render(0);
     desk.save(&recipe(2));
+    desk.wait_for_render(first + 1);
     assert!(desk.shows_at("", 2));
     pause(1500);
     assert_eq!(desk.count(|told| matches!(told, Told::Rendered(_))), 2);

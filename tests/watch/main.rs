@@ -7,4 +7,5 @@ mod mistakes;
 mod notices;
 mod runs;
 mod saves;
+mod session;
 mod soak;
