@@ -150,12 +150,18 @@ fn programs_at_the_same_time_share_a_store_and_a_folder() {
         0
     );
     let call = ["render", "recipe.ron", "--cache", "store", "--threads", "2"];
-    let children: Vec<_> = (0..4).map(|_| start(&place, &call)).collect();
-    for child in children {
-        let output = child.wait_with_output().unwrap();
-        // The last ones may have found nothing to do.
-        let told = stderr(&output).replace("recipe.ron is up to date\n", "");
-        assert_eq!((code(&output), told), (0, String::new()));
+    for count in [2, 8] {
+        let _ = fs::remove_dir_all(place.path("store"));
+        let children: Vec<_> = (0..count).map(|_| start(&place, &call)).collect();
+        for child in children {
+            let output = child.wait_with_output().unwrap();
+            // The last ones may have found nothing to do.
+            let told = stderr(&output).replace("recipe.ron is up to date\n", "");
+            assert_eq!((code(&output), told), (0, String::new()));
+        }
+        let verified = place.render(&["--verify-cache"]);
+        let told = "7 results were computed again and compared\n".to_owned();
+        assert_eq!((code(&verified), stderr(&verified)), (0, told));
     }
     assert!(place.files("out") == place.files("right"));
     assert_eq!(

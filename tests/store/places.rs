@@ -323,6 +323,11 @@ fn what_is_not_ours_is_neither_followed_nor_removed() {
     fs::rename(store.join("file"), elsewhere.join("file")).unwrap();
     symlink(elsewhere.join("file"), store.join("file")).unwrap();
     links.push(store.join("file"));
+    // The folder of unfinished entries leads to where someone else has one.
+    fs::write(elsewhere.join(".yosegi-a.part"), "half").unwrap();
+    fs::remove_dir(store.join("unfinished")).unwrap();
+    symlink(&elsewhere, store.join("unfinished")).unwrap();
+    links.push(store.join("unfinished"));
     fs::create_dir_all(store.join("map/ab").join("0".repeat(62))).unwrap();
     fs::write(store.join("map/ab/notes.txt"), "notes").unwrap();
     fs::create_dir_all(store.join("map/folder")).unwrap();

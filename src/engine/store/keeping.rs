@@ -67,23 +67,42 @@ pub fn clean_store(world: &dyn World, folder: &Path) -> io::Result<Vec<StoreFami
         removed.push(family_of(family, &gone));
         remove_empty(world, &place);
     }
-    if !world.is_link(folder) {
-        let unfinished = folder.join(UNFINISHED);
+    let unfinished = folder.join(UNFINISHED);
+    if !world.is_link(&unfinished) {
         world.sweep(&unfinished);
         let _ = world.remove(&unfinished);
+    }
+    if !world.is_link(folder) {
         // Holds other things, or is in use: then it stays.
         let _ = world.remove(folder);
     }
     result.map(|()| removed)
 }
 
-/// Every file in the store that counts; folders that cannot be listed hold none.
-pub(super) fn kept(world: &dyn World, folder: &Path) -> Vec<Kept> {
-    let families = Family::ALL.into_iter();
-    let places = families.map(|family| folder.join(family.name()));
-    let folders = places.flat_map(|place| numbered(world, &place).unwrap_or_default());
-    let files = folders.flat_map(|folder| list(world, &folder).unwrap_or_default());
-    files.filter_map(Kept::new).collect()
+/// Every file in the store that counts; folders that may not be looked into hold none.
+///
+/// # Errors
+/// If the disk fails, or the run was cancelled: then nothing is known.
+pub(super) fn kept(world: &dyn World, folder: &Path) -> io::Result<Vec<Kept>> {
+    let mut kept = vec![];
+    for family in Family::ALL {
+        for numbered in or_nothing(numbered(world, &folder.join(family.name())))? {
+            let files = or_nothing(list(world, &numbered))?;
+            kept.extend(files.into_iter().filter_map(Kept::new));
+        }
+    }
+    Ok(kept)
+}
+
+/// Nothing, for a folder that is none or that may not be looked into.
+fn or_nothing<T>(listed: io::Result<Vec<T>>) -> io::Result<Vec<T>> {
+    use io::ErrorKind::{NotADirectory, PermissionDenied, Unsupported};
+    match listed {
+        Err(error) if matches!(error.kind(), NotADirectory | PermissionDenied | Unsupported) => {
+            Ok(vec![])
+        }
+        listed => listed,
+    }
 }
 
 /// Removes what another process may have removed as well.

@@ -1,9 +1,10 @@
 //! The limit of the store: its size is estimated while it grows, and entries that were used longest ago make
 //! room.
 //!
-//! The folder is counted when the first entry is written and again when the estimate says that the limit is
-//! exceeded; in between only numbers are added. Other processes may write at the same time: what they add is
-//! seen when the folder is counted next, and what they remove is a miss.
+//! The folder is counted when the first entry is written, and again whenever a tenth of the limit was written or
+//! the limit is exceeded; in between only numbers are added, so that counting costs a bounded time per byte
+//! written. Other processes may write at the same time: what they add is seen when the folder is counted next,
+//! and what they remove is a miss.
 
 use super::Store;
 use super::keeping::{self, Kept};
@@ -85,6 +86,22 @@ impl Limit {
     fn target(&self) -> u64 {
         self.most / 10 * 9
     }
+
+    /// From which total on a store that was counted before is cut down: to stop just below the limit would
+    /// mean to count again soon.
+    fn nearly(&self) -> u64 {
+        self.most - self.most / 20
+    }
+
+    /// Up to which total numbers are only added.
+    fn trusted(&self, total: u64) -> u64 {
+        let more = total.saturating_add(self.most / 10);
+        if total > self.most {
+            // The rest is in use or cannot be removed: to count again at every entry would not help.
+            return more.saturating_add(1 << 20);
+        }
+        more.min(self.most)
+    }
 }
 
 impl Store {
@@ -111,15 +128,15 @@ impl Store {
     /// Counts the folder, and removes what was used longest ago if there is too much.
     fn make_room(&self, size: &mut Size) -> io::Result<()> {
         let (world, limit) = (&*self.world, &self.limit);
-        let mut entries = keeping::kept(world, &self.folder);
+        let Ok(mut entries) = keeping::kept(world, &self.folder) else {
+            // The disk fails, or the run was cancelled: it is counted with the next entry.
+            return Ok(());
+        };
         let mut total = entries.iter().fold(0, |sum: u64, entry| {
             sum.saturating_add(on_disk(entry.bytes))
         });
         let mut result = Ok(());
-        // The estimate counts entries that were replaced twice. Stopping just below the limit would mean to
-        // count again soon.
-        let most = size.total.map_or(limit.most, |_| limit.target());
-        if total > most {
+        if total > size.total.map_or(limit.most, |_| limit.nearly()) {
             let now = SystemTime::now();
             entries.sort_by_cached_key(|entry| (last_use(entry, now), entry.path.clone()));
             for entry in entries {
@@ -134,13 +151,7 @@ impl Store {
             }
         }
         size.total = Some(total);
-        size.counted_above = limit.most;
-        if total > limit.most {
-            // The rest is in use or cannot be removed: to count again at every entry would not help.
-            size.counted_above = total
-                .saturating_add(limit.most / 10)
-                .saturating_add(1 << 20);
-        }
+        size.counted_above = limit.trusted(total);
         result
     }
 

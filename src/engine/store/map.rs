@@ -63,9 +63,16 @@ impl Store {
                 .hash(path)
                 .is_ok_and(|found| found == (record.file, record.bytes));
         if matches {
-            self.mark_used(&self.path(Family::File, &record.file));
+            self.mark_copy(record);
         }
         matches
+    }
+
+    /// The copy of a map that is in its place is used as well: whoever loses the file needs it.
+    fn mark_copy(&self, record: &MapRecord) {
+        if let Ok(copy) = self.place(Family::File, &record.file) {
+            self.mark_used(&copy);
+        }
     }
 
     /// Whether the contents of a remembered map seem to be there; only [`Store::restore`] looks at them all.

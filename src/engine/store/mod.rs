@@ -45,12 +45,15 @@ impl Store {
     /// A store in `folder`, which is made when the first entry is written, of at most `limit` bytes. What
     /// runs that were killed have left half-written is removed.
     pub(super) fn new(world: Arc<dyn World>, folder: PathBuf, limit: u64) -> Store {
-        world.sweep(&folder.join(UNFINISHED));
-        Store {
+        let store = Store {
             world,
             folder,
             limit: Arc::new(Limit::new(limit)),
+        };
+        if let Ok(unfinished) = store.unfinished() {
+            store.world.sweep(&unfinished);
         }
+        store
     }
 
     /// The same store behind another world.
@@ -88,8 +91,7 @@ impl Store {
         }
         let path = self.place(family, key)?;
         self.limit.mark(&path);
-        let aside = self.folder.join(UNFINISHED);
-        let mut file = self.world.create_aside(&path, &aside)?;
+        let mut file = self.world.create_aside(&path, &self.unfinished()?)?;
         file.write_all(&entry::header(family, key, payload))?;
         file.write_all(payload)?;
         file.commit()?;
@@ -125,14 +127,30 @@ impl Store {
     /// If a symbolic link stands in the way.
     fn place(&self, family: Family, key: &Key) -> io::Result<PathBuf> {
         let path = self.path(family, key);
-        let mut parts = path.ancestors().take(3);
-        match parts.find(|part| self.world.is_link(part)) {
-            None => Ok(path),
-            Some(link) => Err(io::Error::new(
-                io::ErrorKind::InvalidInput,
-                format!("`{}` is a symbolic link", link.display()),
-            )),
+        path.ancestors()
+            .take(3)
+            .try_for_each(|it| self.refuse_link(it))?;
+        Ok(path)
+    }
+
+    /// Where entries lie until they are whole.
+    ///
+    /// # Errors
+    /// If that is a symbolic link.
+    fn unfinished(&self) -> io::Result<PathBuf> {
+        let folder = self.folder.join(UNFINISHED);
+        self.refuse_link(&folder)?;
+        Ok(folder)
+    }
+
+    fn refuse_link(&self, path: &Path) -> io::Result<()> {
+        if !self.world.is_link(path) {
+            return Ok(());
         }
+        Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("`{}` is a symbolic link", path.display()),
+        ))
     }
 
     fn path(&self, family: Family, key: &Key) -> PathBuf {
