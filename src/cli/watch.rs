@@ -60,7 +60,10 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     );
     let stop = watch.stop();
     let signals = signals::listen(move || stop.stop());
-    watch.run();
+    if let Err(error) = watch.run() {
+        report::problem(&format!("cannot start a thread: {error}"));
+        return Exit::Files;
+    }
     signals.exit().unwrap_or(Exit::Interrupted)
 }
 

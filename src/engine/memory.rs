@@ -23,6 +23,9 @@ pub(super) struct Structure {
     pub(super) taken: u64,
 }
 
+/// What a structure takes besides its contents: keys, names and links. A long session has thousands.
+const BESIDES: usize = 2048;
+
 /// Remembers structures and columns within a budget.
 #[derive(Debug)]
 pub(super) struct Memory {
@@ -129,6 +132,7 @@ impl Memory {
         bytes: usize,
         nanoseconds: f64,
     ) {
+        let bytes = bytes.saturating_add(BESIDES);
         self.put_content(key, Content::Structure(structure), bytes, nanoseconds);
     }
 

@@ -1,11 +1,12 @@
 //! The thread that decides: what has changed, what has to run, what is told.
 
 use super::mailbox::{Inbox, Mailbox};
-use super::run::{Ended, Outcome, PATIENCE, Run, Switches};
+use super::run::{Ended, Outcome, PATIENCE, Run, Runner, Switches};
 use super::session::{Running, Session, State};
 use super::{Told, Watch};
 use crate::world::{Doubt, Notices, NoticesError};
 use std::collections::BTreeSet;
+use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -29,6 +30,7 @@ const UNSEEN: Duration = Duration::from_millis(500);
 pub(super) struct Follow {
     watch: Watch,
     sessions: Vec<Session>,
+    runner: Runner,
     notices: Option<Box<dyn Notices>>,
     /// What the notices follow.
     followed: BTreeSet<PathBuf>,
@@ -45,11 +47,14 @@ pub(super) struct Follow {
 }
 
 impl Follow {
-    pub(super) fn new(watch: Watch) -> Follow {
+    /// # Errors
+    /// If the system gives no thread.
+    pub(super) fn new(watch: Watch) -> io::Result<Follow> {
         let now = Instant::now();
         let session = |followed: &Arc<_>| Session::new(Arc::clone(followed), now);
-        Follow {
+        Ok(Follow {
             sessions: watch.followed.iter().map(session).collect(),
+            runner: Runner::new()?,
             notices: None,
             followed: BTreeSet::new(),
             interval: watch.options.poll.unwrap_or(LOOK),
@@ -59,7 +64,7 @@ impl Follow {
             stopping: None,
             breath: now,
             watch,
-        }
+        })
     }
 
     pub(super) fn run(mut self) {
@@ -235,49 +240,53 @@ impl Follow {
     /// Starts the recipe that changed last, if nothing else runs.
     fn start_next(&mut self) {
         let now = Instant::now();
-        let is_busy = self
-            .sessions
-            .iter()
-            .any(|it| matches!(it.state, State::Running(_)));
+        let is_busy = self.sessions.iter().any(Session::is_running);
         let is_stopping = self.stopping.is_some_and(|(_, until)| now < until);
         if is_busy || is_stopping || now < self.breath {
             return;
         }
         if self.stopping.take().is_some() {
-            // It is in a call that cannot be stopped: what it still gives is dropped.
-            if let Ok(engine) = self.watch.engine.beside() {
-                self.watch.engine = Arc::new(engine);
-            }
+            self.leave_behind();
         }
-        let due = self.sessions.iter_mut().rev();
-        let due = due.filter(|session| matches!(session.state, State::Due));
+        let due = self.sessions.iter().enumerate().rev();
+        let due = due.filter(|(_, session)| matches!(session.state, State::Due));
         // Of those that changed at the same time the first: all of them, at the start.
-        let Some(session) = due.max_by_key(|session| session.changed) else {
-            return;
-        };
+        let next = due.max_by_key(|(_, session)| session.changed);
+        if let Some((index, _)) = next {
+            self.start(index);
+        }
+    }
+
+    /// The run is in a call that cannot be stopped: the next one gets threads of its own, and what the old
+    /// one still gives is dropped.
+    fn leave_behind(&mut self) {
+        // Without more threads the next run waits for the old one.
+        if let (Ok(engine), Ok(runner)) = (self.watch.engine.beside(), Runner::new()) {
+            self.watch.engine = Arc::new(engine);
+            self.runner = runner;
+        }
+    }
+
+    fn start(&mut self, index: usize) {
         self.runs += 1;
+        let (watch, session) = (&self.watch, &mut self.sessions[index]);
         let switches = Switches::default();
         let running = Running {
             number: self.runs,
             switches: switches.clone(),
         };
-        let run = Run {
+        self.runner.start(Run {
             number: self.runs,
             followed: Arc::clone(&session.followed),
-            engine: Arc::clone(&self.watch.engine),
-            world: Arc::clone(&self.watch.world),
-            audience: Arc::clone(&self.watch.audience),
-            mailbox: Arc::clone(&self.watch.mailbox),
+            engine: Arc::clone(&watch.engine),
+            world: Arc::clone(&watch.world),
+            audience: Arc::clone(&watch.audience),
+            mailbox: Arc::clone(&watch.mailbox),
             trace: session.begin(running),
             switches,
-            preview: self.watch.options.preview,
+            preview: watch.options.preview,
             noticed: session.changed,
-        };
-        if run.start().is_err() {
-            // The system has no more threads now: it may have some later.
-            session.end(State::Due);
-            self.breath = now + LOOK;
-        }
+        });
     }
 
     fn conclude(&mut self, ended: Ended) {

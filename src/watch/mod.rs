@@ -17,6 +17,7 @@ use crate::engine::Engine;
 use crate::graph::Settings;
 use crate::world::World;
 use mailbox::Mailbox;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -89,8 +90,12 @@ impl Watch {
 
     /// Renders all recipes, then follows them until it is stopped. A run that is going on then has 300 ms to
     /// end; whatever it does later is dropped.
-    pub fn run(self) {
-        follow::Follow::new(self).run();
+    ///
+    /// # Errors
+    /// If the system gives no thread to run on.
+    pub fn run(self) -> io::Result<()> {
+        follow::Follow::new(self)?.run();
+        Ok(())
     }
 }
 

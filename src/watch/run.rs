@@ -10,6 +10,7 @@ use crate::world::{Trace, Traced, World};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
 
 /// How long after the notice of a change the last of the small pictures should be there.
@@ -76,14 +77,30 @@ pub(super) enum Outcome {
     Stopped,
 }
 
-impl Run {
+/// A thread that runs one run after the other; it ends when this is dropped and its last run has ended.
+pub(super) struct Runner(Sender<Run>);
+
+impl Runner {
     /// Starts the thread.
-    pub(super) fn start(self) -> std::io::Result<()> {
-        self.switches.previews.store(self.preview, Ordering::SeqCst);
+    ///
+    /// # Errors
+    /// If the system gives none.
+    pub(super) fn new() -> std::io::Result<Runner> {
+        let (sender, runs) = channel::<Run>();
         let thread = std::thread::Builder::new().name("run".to_owned());
-        thread.spawn(move || self.run()).map(|_| ())
+        thread.spawn(move || runs.into_iter().for_each(Run::run))?;
+        Ok(Runner(sender))
     }
 
+    /// Has a run started behind those before it.
+    pub(super) fn start(&self, run: Run) {
+        run.switches.previews.store(run.preview, Ordering::SeqCst);
+        // Runs catch their panics, so the thread is there as long as this is.
+        let _ = self.0.send(run);
+    }
+}
+
+impl Run {
     fn run(self) {
         let outcome = catch_unwind(AssertUnwindSafe(|| self.outcome()));
         // The engine catches panics of nodes; whatever else goes wrong must not end the watch.

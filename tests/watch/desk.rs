@@ -84,7 +84,7 @@ impl Desk {
             folder,
             told,
             stop,
-            thread: Some(std::thread::spawn(move || watch.run())),
+            thread: Some(std::thread::spawn(move || watch.run().unwrap())),
         }
     }
 
