@@ -145,3 +145,14 @@ impl PendingFile for StoppableFile {
         placed.unwrap_or_else(|| cancel.check())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::forwarded;
+
+    #[test]
+    fn whatever_is_asked_is_passed_on() {
+        forwarded::check(|world| Box::new(Stoppable::new(world, Cancel::new())));
+    }
+}

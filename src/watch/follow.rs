@@ -1,21 +1,16 @@
 //! The thread that decides: what has changed, what has to run, what is told.
 
-use super::mailbox::{Inbox, Mailbox};
+use super::listening::{Listening, POLL};
+use super::mailbox::Inbox;
 use super::run::{Ended, Outcome, PATIENCE, Run, Runner, Switches};
 use super::session::{Running, Session, State};
 use super::{Told, Watch};
-use crate::world::{Doubt, Notices, NoticesError};
+use crate::world::{Doubt, NoticesError};
 use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-/// Time between two looks at the stamps of all files, in case notices do not come.
-const LOOK: Duration = Duration::from_secs(1);
-
-/// The same where it is known that they do not come.
-const POLL: Duration = Duration::from_millis(250);
 
 /// Time between the starts of two runs of which the first was overtaken by a change.
 const BREATH: Duration = Duration::from_millis(30);
@@ -31,14 +26,7 @@ pub(super) struct Follow {
     watch: Watch,
     sessions: Vec<Session>,
     runner: Runner,
-    notices: Option<Box<dyn Notices>>,
-    /// What the notices follow.
-    followed: BTreeSet<PathBuf>,
-    /// Time between two looks.
-    interval: Duration,
-    next_look: Instant,
-    /// A change that was found without a notice of it.
-    unannounced: Option<PathBuf>,
+    listening: Listening,
     runs: u64,
     /// The run that was stopped and has not ended, and until when that is waited for.
     stopping: Option<(u64, Instant)>,
@@ -55,11 +43,7 @@ impl Follow {
         Ok(Follow {
             sessions: watch.followed.iter().map(session).collect(),
             runner: Runner::new()?,
-            notices: None,
-            followed: BTreeSet::new(),
-            interval: watch.options.poll.unwrap_or(LOOK),
-            next_look: now,
-            unannounced: None,
+            listening: Listening::new(watch.options.poll),
             runs: 0,
             stopping: None,
             breath: now,
@@ -88,10 +72,10 @@ impl Follow {
             self.follow_paths(&mut inbox);
         }
         if inbox.heard() {
-            self.unannounced
-                .take_if(|path| inbox.all || inbox.paths.contains(path));
+            self.listening.hear(&inbox);
             self.look(&inbox);
-        } else if Instant::now() >= self.next_look {
+        }
+        if Instant::now() >= self.listening.looks_at() {
             self.look_around();
         }
         self.tell_failures();
@@ -106,29 +90,23 @@ impl Follow {
         let patience = self.stopping.map(|(_, until)| until);
         let start = is_due.then(|| patience.unwrap_or(self.breath).max(self.breath));
         let told = self.sessions.iter().filter_map(Session::tells_at);
-        told.chain(start).fold(self.next_look, Instant::min)
+        let look = self.listening.looks_at();
+        told.chain(start).fold(look, Instant::min)
     }
 
     /// Asks for notices; without them files are looked at again and again.
     fn listen(&mut self) {
-        if self.watch.options.poll.is_some() {
-            return;
-        }
-        let mailbox: Arc<Mailbox> = Arc::clone(&self.watch.mailbox);
-        match self
-            .watch
-            .world
-            .notices(Arc::new(move |heard| mailbox.hear(heard)))
+        let watch = &self.watch;
+        if watch.options.poll.is_none()
+            && let Err(error) = self.listening.start(&*watch.world, &watch.mailbox)
         {
-            Ok(notices) => self.notices = Some(notices),
-            Err(error) => self.poll(&error),
+            self.poll(&error);
         }
     }
 
+    /// Does without notices, and says so.
     fn poll(&mut self, error: &NoticesError) {
-        self.notices = None;
-        self.interval = POLL;
-        self.next_look = Instant::now() + POLL;
+        self.listening.poll();
         for session in &self.sessions {
             let told = Told::Polling {
                 reason: error.to_string(),
@@ -138,27 +116,15 @@ impl Follow {
         }
     }
 
+    fn paths(&self) -> BTreeSet<PathBuf> {
+        self.sessions.iter().flat_map(Session::paths).collect()
+    }
+
     /// Has the notices follow all paths, and adds to the inbox where something may have been missed.
     fn follow_paths(&mut self, inbox: &mut Inbox) {
-        let Some(notices) = &mut self.notices else {
-            return;
-        };
-        let paths: BTreeSet<PathBuf> = self.sessions.iter().flat_map(Session::paths).collect();
-        if paths == self.followed && !inbox.heard() {
-            return;
-        }
-        match notices.follow(&paths) {
-            Ok(is_new) => {
-                inbox.all |= is_new;
-                inbox
-                    .paths
-                    .extend(paths.difference(&self.followed).cloned());
-                self.followed = paths;
-            }
-            Err(error) => {
-                inbox.all = true;
-                self.poll(&error);
-            }
+        if let Err(error) = self.listening.follow(self.paths(), inbox) {
+            inbox.all = true;
+            self.poll(&error);
         }
     }
 
@@ -180,21 +146,17 @@ impl Follow {
 
     /// Looks at the stamps of everything.
     fn look_around(&mut self) {
-        self.next_look = Instant::now() + self.interval;
-        // Follows them anew even if nothing was heard: a folder may have gone without notice.
-        self.followed.clear();
-        let mut inbox = Inbox::default();
-        self.follow_paths(&mut inbox);
-        inbox.paths.clear();
-        let found = self.look(&inbox);
-        if self.notices.is_none() {
-            return;
-        }
-        if let Some(path) = self.unannounced.take() {
-            let reason = format!("that of `{}` did not come", path.display());
-            self.poll(&NoticesError::new(reason));
-        } else {
-            self.unannounced = found;
+        let all = self.listening.begin_look(self.paths());
+        let all = all.unwrap_or_else(|error| {
+            self.poll(&error);
+            true
+        });
+        let found = self.look(&Inbox {
+            all,
+            ..Inbox::default()
+        });
+        if let Err(error) = self.listening.end_look(found) {
+            self.poll(&error);
         }
     }
 

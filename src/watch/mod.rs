@@ -6,6 +6,7 @@
 //! last good maps stay in their places.
 
 mod follow;
+mod listening;
 mod mailbox;
 mod report;
 mod run;

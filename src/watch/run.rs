@@ -148,10 +148,7 @@ impl Run {
                 let computing = rendered.times.computing;
                 Outcome::Rendered(Rendered {
                     warnings: loaded.warnings,
-                    times: Times {
-                        computing,
-                        ..self.times(start, loading, preview)
-                    },
+                    times: self.times(start, [loading, preview], computing),
                     ..rendered
                 })
             }
@@ -160,7 +157,7 @@ impl Run {
         }
     }
 
-    fn times(&self, start: Instant, loading: Duration, preview: Duration) -> Times {
+    fn times(&self, start: Instant, [loading, preview]: [Duration; 2], computing: f64) -> Times {
         let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
         let waiting = start.saturating_duration_since(self.noticed);
         let rendering = start.elapsed().saturating_sub(loading + preview);
@@ -170,7 +167,7 @@ impl Run {
             loading: milliseconds(loading),
             preview: milliseconds(preview),
             rendering: milliseconds(rendering),
-            computing: 0.0,
+            computing,
         }
     }
 

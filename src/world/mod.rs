@@ -2,6 +2,8 @@
 
 mod again;
 mod disk;
+#[cfg(test)]
+pub(crate) mod forwarded;
 mod memory;
 mod notices;
 mod stamp;

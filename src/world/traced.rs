@@ -1,6 +1,6 @@
 //! A world that notes what is read through it, so that the same can be asked again later.
 
-use super::{Listed, PendingFile, Stamp, World};
+use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
 use crate::key::{Key, KeyHasher};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Read};
@@ -242,5 +242,48 @@ impl World for Traced {
 
     fn stamp(&self, path: &Path) -> io::Result<Stamp> {
         self.world.stamp(path)
+    }
+
+    fn notices(&self, wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
+        self.world.notices(wake)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{Memory, forwarded};
+
+    #[test]
+    fn whatever_is_asked_is_passed_on() {
+        forwarded::check(|world| Box::new(Traced::new(world, Trace::new(), || {})));
+    }
+
+    #[test]
+    fn a_trace_knows_what_is_another_now_and_what_was_not_there() {
+        let files = Memory::default();
+        files.insert("a", "one");
+        let trace = Trace::new();
+        let world = Traced::new(Arc::new(files.clone()), trace.clone(), || {});
+        world.read(Path::new("a")).unwrap();
+        assert!(world.read(Path::new("b")).is_err());
+        assert_eq!(trace.changed(&files, Doubt::All), None);
+        files.insert("c", "not asked for");
+        files.insert("a", "one");
+        assert_eq!(trace.changed(&files, Doubt::All), None);
+        files.insert("b", "new");
+        assert_eq!(trace.changed(&files, Doubt::All), Some("b".into()));
+    }
+
+    #[test]
+    fn of_two_answers_in_one_run_the_first_counts() {
+        let files = Memory::default();
+        files.insert("a", "one");
+        let trace = Trace::new();
+        let world = Traced::new(Arc::new(files.clone()), trace.clone(), || {});
+        world.read(Path::new("a")).unwrap();
+        files.insert("a", "two");
+        world.read(Path::new("a")).unwrap();
+        assert_eq!(trace.changed(&files, Doubt::All), Some("a".into()));
     }
 }
