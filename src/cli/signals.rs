@@ -55,7 +55,8 @@ fn follow(mut arrivals: Arrivals, first: &AtomicU8, stop: impl FnOnce() + Send +
     first.store(exit as u8, Ordering::Relaxed);
     let end = Instant::now() + GRACE;
     // A run that puts a file in place has to be waited for, but not by whoever hears the second signal.
-    thread::spawn(stop);
+    // Without a thread for it the program ends all the same.
+    let _ = thread::Builder::new().spawn(stop);
     while Instant::now() < end && !arrivals.is_another() {
         thread::sleep(PAUSE);
     }

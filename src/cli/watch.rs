@@ -9,7 +9,7 @@ use std::time::Duration;
 use yosegi::diagnostics::{Diagnostic, render_json};
 use yosegi::engine::{Listener, Options};
 use yosegi::watch::{self, Followed, Rendered, Told, Watch};
-use yosegi::world::Disk;
+use yosegi::world::{Disk, abandon_unfinished};
 
 #[derive(clap::Args)]
 #[group(skip)]
@@ -60,7 +60,10 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     );
     let stop = watch.stop();
     let signals = signals::listen(move || stop.stop());
-    if let Err(error) = watch.run() {
+    let watched = watch.run();
+    // A run that could not stop may still be writing.
+    abandon_unfinished();
+    if let Err(error) = watched {
         report::problem(&format!("cannot start a thread: {error}"));
         return Exit::Files;
     }
@@ -118,6 +121,7 @@ impl Screen {
                 let paths = some_of(&shown(&paths));
                 report::line(&format!("{name}: {paths} after {milliseconds:.0} ms"));
             }
+            Told::PreviewFailed(diagnostics) => report::diagnostics(&diagnostics, false),
             Told::Rendered(rendered) => {
                 report::diagnostics(&rendered.warnings, false);
                 report::line(&format!("{name}: {}", sentence(&rendered)));
@@ -173,12 +177,21 @@ fn some_of(names: &[String]) -> String {
 /// What is told, as objects.
 fn lines(told: Told) -> Vec<Json> {
     match told {
-        Told::Run(event) => vec![json!(event)],
+        // A path that is not Unicode cannot be told.
+        Told::Run(event) => serde_json::to_value(event).into_iter().collect(),
         Told::Previewed {
             paths,
             milliseconds,
         } => {
-            vec![json!({ "event": "previewed", "paths": paths, "milliseconds": milliseconds })]
+            vec![
+                json!({ "event": "previewed", "paths": shown(&paths), "milliseconds": milliseconds }),
+            ]
+        }
+        Told::PreviewFailed(diagnostics) => {
+            let diagnostics = diagnostics.iter().map(object);
+            diagnostics
+                .chain([json!({ "event": "preview_failed" })])
+                .collect()
         }
         Told::Rendered(rendered) => {
             let warnings = rendered.warnings.iter().map(object);
@@ -190,7 +203,7 @@ fn lines(told: Told) -> Vec<Json> {
             let diagnostics = failed.diagnostics().iter().map(object);
             diagnostics.chain([json!({ "event": "failed" })]).collect()
         }
-        Told::Waiting(paths) => vec![json!({ "event": "waiting", "paths": paths })],
+        Told::Waiting(paths) => vec![json!({ "event": "waiting", "paths": shown(&paths) })],
         Told::Polling {
             reason,
             milliseconds,
@@ -207,7 +220,7 @@ fn object(diagnostic: &Diagnostic) -> Json {
 
 fn print(recipe: &Path, mut line: Json) {
     if let Json::Object(fields) = &mut line {
-        fields.insert("recipe".to_owned(), json!(recipe));
+        fields.insert("recipe".to_owned(), json!(recipe.to_string_lossy()));
     }
     report::json(&line);
 }

@@ -23,8 +23,9 @@ pub(super) struct Structure {
     pub(super) taken: u64,
 }
 
-/// What a structure takes besides its contents: keys, names and links. A long session has thousands.
-const BESIDES: usize = 2048;
+/// What a structure takes besides its contents: keys, names, links, and the holes that thousands of small
+/// things leave between columns in a long session.
+const BESIDES: usize = 4096;
 
 /// Remembers structures and columns within a budget.
 #[derive(Debug)]

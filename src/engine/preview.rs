@@ -7,7 +7,7 @@ use super::progress::Meter;
 use super::render::{Output, Render, chosen_outputs};
 use super::{Engine, FlatPiece, RunError};
 use crate::field::{Program, Target};
-use crate::key::KeyHasher;
+use crate::key::{Key, KeyHasher};
 use crate::output::{self, Encoder, Faults, MapKind, MapRequest};
 use crate::value::{MapFormat, Maps};
 use crate::world::World;
@@ -26,7 +26,7 @@ const FINEST: u32 = 512;
 const GROWTH: u32 = 5;
 
 impl Engine {
-    /// Writes small pictures of those outputs that are not known yet, as `NAME.preview.png` in the request's
+    /// Writes small pictures of those outputs that are not known yet, or that have one of another state, as `NAME.preview.png` in the request's
     /// folder: each replaced by finer ones as long as these are likely to be done within `time`. They show
     /// the base colour, or the first channel of what has none. Gives the files.
     ///
@@ -53,7 +53,7 @@ impl Engine {
         let plan = self.plan(request.graph, &wanted)?;
         let protected = files::Protected::new(&*self.world, &plan, self.options.store.as_deref());
         let outputs = self.outputs(request, &plan, &protected, &wanted);
-        let is_new = |output: &&Output<'_>| output.known().is_none();
+        let is_new = |output: &&Output<'_>| output.known().is_none() || output.has_other_preview();
         let missing: Vec<&Output<'_>> = outputs.iter().filter(is_new).collect();
         let indices: Vec<NodeIndex> = missing.iter().map(|output| output.index).collect();
         let built = self.build(&plan.part(&indices), request.listener)?;
@@ -79,6 +79,17 @@ impl Output<'_> {
     fn preview_path(&self) -> PathBuf {
         let name = format!("{}.preview.png", self.name());
         self.request.folder.join(name)
+    }
+
+    /// What a small picture of the output as it is planned carries.
+    fn preview_key(&self) -> Key {
+        KeyHasher::new("preview", 1).key(self.plan_key()).finish()
+    }
+
+    /// Whether there is a small picture, but of another state of the recipe.
+    fn has_other_preview(&self) -> bool {
+        let key = output::read_key(&*self.engine.world, &self.preview_path());
+        key.is_some_and(|key| key != self.preview_key())
     }
 
     /// Writes pictures until the next one would likely be late.
@@ -121,7 +132,7 @@ impl Output<'_> {
             size_mm: maps.size,
             kind,
             format: MapFormat::Png8,
-            key: KeyHasher::new("preview", 1).key(target.key()).finish(),
+            key: self.preview_key(),
             channel: channel.to_owned(),
         };
         let range = maps.ranges.get(channel).copied();

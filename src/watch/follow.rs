@@ -1,8 +1,9 @@
 //! The thread that decides: what has changed, what has to run, what is told.
 
+use super::lane::Lane;
 use super::listening::{Listening, POLL};
 use super::mailbox::Inbox;
-use super::run::{Ended, Outcome, PATIENCE, Run, Runner, Switches};
+use super::run::{Ended, Outcome, Run, Switches};
 use super::session::{Running, Session, State};
 use super::{Told, Watch};
 use crate::world::{Doubt, NoticesError};
@@ -11,9 +12,6 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-/// Time between the starts of two runs of which the first was overtaken by a change.
-const BREATH: Duration = Duration::from_millis(30);
 
 /// How long a run may take to end when the watch does.
 const FAREWELL: Duration = Duration::from_millis(300);
@@ -25,13 +23,9 @@ const UNSEEN: Duration = Duration::from_millis(500);
 pub(super) struct Follow {
     watch: Watch,
     sessions: Vec<Session>,
-    runner: Runner,
+    lane: Lane,
     listening: Listening,
     runs: u64,
-    /// The run that was stopped and has not ended, and until when that is waited for.
-    stopping: Option<(u64, Instant)>,
-    /// When the next run may start.
-    breath: Instant,
 }
 
 impl Follow {
@@ -42,11 +36,9 @@ impl Follow {
         let session = |followed: &Arc<_>| Session::new(Arc::clone(followed), now);
         Ok(Follow {
             sessions: watch.followed.iter().map(session).collect(),
-            runner: Runner::new()?,
+            lane: Lane::new(watch.engine.clone())?,
             listening: Listening::new(watch.options.poll),
             runs: 0,
-            stopping: None,
-            breath: now,
             watch,
         })
     }
@@ -68,8 +60,12 @@ impl Follow {
         for ended in std::mem::take(&mut inbox.ended) {
             self.conclude(ended);
         }
-        if inbox.reads || inbox.heard() {
+        if !inbox.reads.is_empty() || inbox.heard() {
             self.follow_paths(&mut inbox);
+        }
+        if !inbox.reads.is_empty() {
+            // A notice may have come before the run knew what it had read.
+            self.find_changes(Doubt::Lately(&inbox.reads));
         }
         if inbox.heard() {
             self.listening.hear(&inbox);
@@ -83,12 +79,9 @@ impl Follow {
 
     /// When there is something to do even if nothing is heard.
     fn wakes_at(&self) -> Instant {
-        let is_due = self
-            .sessions
-            .iter()
-            .any(|session| matches!(session.state, State::Due));
-        let patience = self.stopping.map(|(_, until)| until);
-        let start = is_due.then(|| patience.unwrap_or(self.breath).max(self.breath));
+        let is_due = |session: &Session| matches!(session.state, State::Due);
+        let waits = !self.is_busy() && self.sessions.iter().any(is_due);
+        let start = waits.then(|| self.lane.frees_at()).flatten();
         let told = self.sessions.iter().filter_map(Session::tells_at);
         let look = self.listening.looks_at();
         told.chain(start).fold(look, Instant::min)
@@ -162,7 +155,7 @@ impl Follow {
 
     /// Makes what has changed due, and stops what it is out of date for; gives a path that changed.
     fn find_changes(&mut self, doubt: Doubt<'_>) -> Option<PathBuf> {
-        let world = Arc::clone(&self.watch.world);
+        let (world, now) = (Arc::clone(&self.watch.world), Instant::now());
         let mut found = None;
         for index in 0..self.sessions.len() {
             if matches!(self.sessions[index].state, State::Due) {
@@ -170,62 +163,44 @@ impl Follow {
             }
             if let Some(path) = self.sessions[index].changed_path(&*world, doubt) {
                 found = Some(path);
-                self.supersede(index);
+                self.supersede(index, now);
             }
         }
         found
     }
 
     /// The recipe has changed: it runs next, and whatever runs now makes way for it.
-    fn supersede(&mut self, index: usize) {
-        let now = Instant::now();
-        self.sessions[index].changed = now;
-        self.sessions[index].stirred = now;
+    fn supersede(&mut self, index: usize, now: Instant) {
         for other in 0..self.sessions.len() {
             let session = &mut self.sessions[other];
-            let State::Running(running) = &session.state else {
-                continue;
-            };
             let is_unseen = session.shown.is_none_or(|shown| now > shown + UNSEEN);
-            let patience = if other == index && is_unseen {
-                running.switches.stop_after_preview()
-            } else {
-                running.switches.stop();
-                PATIENCE
-            };
-            self.stopping = Some((running.number, now + patience));
-            session.state = State::Due;
+            if let State::Running(running) = &session.state {
+                self.lane.stop(running, other == index && is_unseen, now);
+                session.state = State::Due;
+            }
         }
-        self.sessions[index].state = State::Due;
+        let session = &mut self.sessions[index];
+        (session.changed, session.stirred) = (now, now);
+        session.state = State::Due;
+    }
+
+    fn is_busy(&self) -> bool {
+        self.sessions.iter().any(Session::is_running)
     }
 
     /// Starts the recipe that changed last, if nothing else runs.
     fn start_next(&mut self) {
-        let now = Instant::now();
-        let is_busy = self.sessions.iter().any(Session::is_running);
-        let is_stopping = self.stopping.is_some_and(|(_, until)| now < until);
-        if is_busy || is_stopping || now < self.breath {
+        if self.is_busy() {
             return;
-        }
-        if self.stopping.take().is_some() {
-            self.leave_behind();
         }
         let due = self.sessions.iter().enumerate().rev();
         let due = due.filter(|(_, session)| matches!(session.state, State::Due));
         // Of those that changed at the same time the first: all of them, at the start.
         let next = due.max_by_key(|(_, session)| session.changed);
-        if let Some((index, _)) = next {
+        if let Some((index, _)) = next
+            && self.lane.is_free(Instant::now())
+        {
             self.start(index);
-        }
-    }
-
-    /// The run is in a call that cannot be stopped: the next one gets threads of its own, and what the old
-    /// one still gives is dropped.
-    fn leave_behind(&mut self) {
-        // Without more threads the next run waits for the old one.
-        if let (Ok(engine), Ok(runner)) = (self.watch.engine.beside(), Runner::new()) {
-            self.watch.engine = Arc::new(engine);
-            self.runner = runner;
         }
     }
 
@@ -237,10 +212,10 @@ impl Follow {
             number: self.runs,
             switches: switches.clone(),
         };
-        self.runner.start(Run {
+        self.lane.start(Run {
             number: self.runs,
             followed: Arc::clone(&session.followed),
-            engine: Arc::clone(&watch.engine),
+            engine: self.lane.engine(),
             world: Arc::clone(&watch.world),
             audience: Arc::clone(&watch.audience),
             mailbox: Arc::clone(&watch.mailbox),
@@ -253,13 +228,7 @@ impl Follow {
 
     fn conclude(&mut self, ended: Ended) {
         let now = Instant::now();
-        if self
-            .stopping
-            .is_some_and(|(number, _)| number == ended.number)
-        {
-            self.stopping = None;
-            self.breath = now + BREATH;
-        }
+        self.lane.end(ended.number, now);
         let Some(session) = self
             .sessions
             .iter_mut()
@@ -284,8 +253,15 @@ impl Follow {
         }
     }
 
+    /// Tells of mistakes in files that have been quiet, if they are still the same.
     fn tell_failures(&mut self) {
         let now = Instant::now();
+        let is_ready = |session: &Session| session.tells_at().is_some_and(|time| time <= now);
+        if !self.sessions.iter().any(is_ready) {
+            return;
+        }
+        // Where notices do not come the last look may be long ago.
+        self.find_changes(Doubt::About(&BTreeSet::new()));
         for session in &mut self.sessions {
             for told in session.failed(now).into_iter().flatten() {
                 (self.watch.audience)(&session.followed.recipe, told);
@@ -296,7 +272,7 @@ impl Follow {
     /// Stops what runs, and waits a moment for it to leave everything in order.
     fn stop(self) {
         let end = Instant::now() + FAREWELL;
-        let mut going = self.stopping.map(|(number, _)| number);
+        let mut going = self.lane.stopping();
         for session in &self.sessions {
             if let State::Running(running) = &session.state {
                 running.switches.stop();

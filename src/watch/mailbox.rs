@@ -14,8 +14,8 @@ pub(super) struct Inbox {
     pub(super) paths: BTreeSet<PathBuf>,
     /// Notices were lost, or a folder is listened to anew: anything may have changed.
     pub(super) all: bool,
-    /// A run has read what was not followed before.
-    pub(super) reads: bool,
+    /// What a run has read for the first time.
+    pub(super) reads: BTreeSet<PathBuf>,
     /// Runs that ended.
     pub(super) ended: Vec<Ended>,
     /// The watch is to end.
@@ -29,7 +29,7 @@ impl Inbox {
     }
 
     fn is_empty(&self) -> bool {
-        !self.heard() && !self.reads && self.ended.is_empty() && !self.stop
+        !self.heard() && self.reads.is_empty() && self.ended.is_empty() && !self.stop
     }
 }
 

@@ -6,6 +6,7 @@
 //! last good maps stay in their places.
 
 mod follow;
+mod lane;
 mod listening;
 mod mailbox;
 mod report;
@@ -52,7 +53,7 @@ pub type Audience = Arc<dyn Fn(&Path, Told) + Send + Sync>;
 
 /// Follows recipes until it is stopped.
 pub struct Watch {
-    engine: Arc<Engine>,
+    engine: Engine,
     world: Arc<dyn World>,
     followed: Vec<Arc<Followed>>,
     options: Options,
@@ -75,7 +76,7 @@ impl Watch {
         audience: Audience,
     ) -> Watch {
         Watch {
-            engine: Arc::new(engine),
+            engine,
             world,
             followed: followed.into_iter().map(Arc::new).collect(),
             options,

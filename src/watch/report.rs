@@ -2,7 +2,7 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::engine::{Event, RunError};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -19,6 +19,8 @@ pub enum Told {
         /// Since the change was noticed.
         milliseconds: f64,
     },
+    /// The small pictures cannot be written: why.
+    PreviewFailed(Vec<Diagnostic>),
     /// All maps are in their places.
     Rendered(Rendered),
     /// The recipe cannot be read or rendered; the maps that are there stay.
@@ -64,13 +66,21 @@ pub struct Rendered {
     /// Nodes whose results were there already; of maps that are up to date no node is named.
     pub reused: Vec<String>,
     /// Maps that were painted.
+    #[serde(serialize_with = "as_text")]
     pub written: Vec<PathBuf>,
     /// Maps that were copied from the store.
+    #[serde(serialize_with = "as_text")]
     pub restored: Vec<PathBuf>,
     /// Maps that needed nothing.
+    #[serde(serialize_with = "as_text")]
     pub up_to_date: Vec<PathBuf>,
     /// How long it took.
     pub times: Times,
+}
+
+/// Paths as a person reads them: not all are Unicode.
+fn as_text<S: Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(paths.iter().map(|path| path.to_string_lossy()))
 }
 
 /// How long a run took, in milliseconds.

@@ -8,6 +8,7 @@ use crate::engine::{Cancel, Engine, Event, Render, RunError};
 use crate::graph::{Graph, load_until};
 use crate::world::{Trace, Traced, World};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -50,15 +51,11 @@ impl Switches {
         self.cancel.cancel();
     }
 
-    /// Stops the run when its small pictures are there, at once if there are none to come; gives how long
-    /// that may take.
-    pub(super) fn stop_after_preview(&self) -> Duration {
+    /// Has the run stop when its small pictures are there; gives how long they may take, `None` if there are
+    /// none to come.
+    pub(super) fn stop_after_preview(&self) -> Option<Duration> {
         self.no_further.store(true, Ordering::SeqCst);
-        if self.previews.load(Ordering::SeqCst) {
-            return 2 * PREVIEW;
-        }
-        self.stop();
-        PATIENCE
+        self.previews.load(Ordering::SeqCst).then_some(2 * PREVIEW)
     }
 }
 
@@ -124,7 +121,11 @@ impl Run {
     fn outcome(&self) -> Outcome {
         let start = Instant::now();
         let mailbox = Arc::clone(&self.mailbox);
-        let on_new = move || mailbox.post(|inbox| inbox.reads = true);
+        let on_new = move |path: &Path| {
+            mailbox.post(|inbox| {
+                inbox.reads.insert(path.to_owned());
+            });
+        };
         let inputs: Arc<dyn World> = Arc::new(Traced::new(
             Arc::clone(&self.world),
             self.trace.clone(),
@@ -180,9 +181,15 @@ impl Run {
         // All that happens here happens again in the run itself, and is told then.
         let nobody = |_: Event| {};
         let left = PREVIEW.saturating_sub(self.noticed.elapsed());
-        let paths = self
-            .engine
-            .preview(&self.request(graph, &nobody), inputs, left)?;
+        let request = self.request(graph, &nobody);
+        let paths = match self.engine.preview(&request, inputs, left) {
+            Err(RunError::Files(diagnostics)) => {
+                // The maps may be written all the same; if not, that is told in its turn.
+                self.tell(Told::PreviewFailed(diagnostics));
+                vec![]
+            }
+            paths => paths?,
+        };
         // In this order: whoever asks for a stop meanwhile finds one of the two.
         self.switches.previews.store(false, Ordering::SeqCst);
         if self.switches.no_further.load(Ordering::SeqCst) {
@@ -190,11 +197,10 @@ impl Run {
         }
         if !paths.is_empty() {
             let milliseconds = self.noticed.elapsed().as_secs_f64() * 1e3;
-            let told = Told::Previewed {
+            self.tell(Told::Previewed {
                 paths,
                 milliseconds,
-            };
-            (self.audience)(&self.followed.recipe, told);
+            });
         }
         Ok(start.elapsed())
     }
@@ -207,10 +213,17 @@ impl Run {
     ) -> Result<(), RunError> {
         let listener = |event: Event| {
             collector.hear(&event);
-            (self.audience)(&self.followed.recipe, Told::Run(event));
+            self.tell(Told::Run(event));
         };
         let request = self.request(graph, &listener);
         self.engine.render_reading(&request, inputs).map(|_| ())
+    }
+
+    /// Says something, unless the run was overtaken: the newest one speaks then.
+    fn tell(&self, told: Told) {
+        if !self.switches.cancel.is_cancelled() {
+            (self.audience)(&self.followed.recipe, told);
+        }
     }
 
     fn request<'r>(

@@ -12,6 +12,9 @@ use std::time::{Duration, Instant};
 /// How long files have to be quiet before a mistake in them is told.
 pub(super) const QUIET: Duration = Duration::from_millis(250);
 
+/// How long after the last change a mistake is told at the latest, however often the files are touched.
+const LATEST: Duration = Duration::from_secs(2);
+
 /// A recipe and what became of it.
 pub(super) struct Session {
     pub(super) followed: Arc<Followed>,
@@ -103,7 +106,8 @@ impl Session {
 
     /// When its mistakes are to be told.
     pub(super) fn tells_at(&self) -> Option<Instant> {
-        matches!(self.state, State::Failing(_)).then(|| self.stirred + QUIET)
+        let time = (self.stirred + QUIET).min(self.changed + LATEST);
+        matches!(self.state, State::Failing(_)).then_some(time)
     }
 
     /// Settles what failed, if it is time: what is to be told of it.

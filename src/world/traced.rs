@@ -39,6 +39,8 @@ pub enum Doubt<'a> {
     All,
     /// Those about these paths and about what lies below them, and those whose file has another stamp.
     About(&'a BTreeSet<PathBuf>),
+    /// Those about these paths and no others, if the file has another stamp than before it was read.
+    Lately(&'a BTreeSet<PathBuf>),
 }
 
 impl Trace {
@@ -99,7 +101,11 @@ impl Question {
             Doubt::About(paths) if paths.iter().any(|it| self.path().starts_with(it)) => true,
             // Where a link leads is cheap to ask.
             Doubt::About(_) if matches!(self, Question::RealPath(_)) => true,
-            Doubt::About(_) => answer.stamp.is_none() || stamp(world, self.path()) != answer.stamp,
+            Doubt::Lately(paths) if !paths.contains(self.path()) => false,
+            Doubt::Lately(_) if matches!(self, Question::RealPath(_)) => true,
+            Doubt::About(_) | Doubt::Lately(_) => {
+                answer.stamp.is_none() || stamp(world, self.path()) != answer.stamp
+            }
         }
     }
 
@@ -157,14 +163,14 @@ pub struct Traced {
 }
 
 /// Called for each path that was not asked about before.
-type OnNew = Box<dyn Fn() + Send + Sync>;
+type OnNew = Box<dyn Fn(&Path) + Send + Sync>;
 
 impl Traced {
     /// Notes what is read from `world` in `trace`, and calls `on_new` after each new path.
     pub fn new(
         world: Arc<dyn World>,
         trace: Trace,
-        on_new: impl Fn() + Send + Sync + 'static,
+        on_new: impl Fn(&Path) + Send + Sync + 'static,
     ) -> Traced {
         Traced {
             world,
@@ -185,8 +191,9 @@ impl Traced {
             key: key(&said),
             stamp,
         };
+        let path = question.path().to_owned();
         if self.trace.note(question, answer) {
-            (self.on_new)();
+            (self.on_new)(&path);
         }
         said
     }
@@ -256,7 +263,7 @@ mod tests {
 
     #[test]
     fn whatever_is_asked_is_passed_on() {
-        forwarded::check(|world| Box::new(Traced::new(world, Trace::new(), || {})));
+        forwarded::check(|world| Box::new(Traced::new(world, Trace::new(), |_| {})));
     }
 
     #[test]
@@ -264,7 +271,7 @@ mod tests {
         let files = Memory::default();
         files.insert("a", "one");
         let trace = Trace::new();
-        let world = Traced::new(Arc::new(files.clone()), trace.clone(), || {});
+        let world = Traced::new(Arc::new(files.clone()), trace.clone(), |_| {});
         world.read(Path::new("a")).unwrap();
         assert!(world.read(Path::new("b")).is_err());
         assert_eq!(trace.changed(&files, Doubt::All), None);
@@ -280,7 +287,7 @@ mod tests {
         let files = Memory::default();
         files.insert("a", "one");
         let trace = Trace::new();
-        let world = Traced::new(Arc::new(files.clone()), trace.clone(), || {});
+        let world = Traced::new(Arc::new(files.clone()), trace.clone(), |_| {});
         world.read(Path::new("a")).unwrap();
         files.insert("a", "two");
         world.read(Path::new("a")).unwrap();

@@ -15,7 +15,7 @@ pub(crate) const LONG: Duration = Duration::from_secs(20);
 
 /// A folder, a watch of a recipe in it, and what was told.
 pub(crate) struct Desk {
-    pub(crate) folder: TempDir,
+    pub(crate) folder: Arc<TempDir>,
     told: Arc<Mutex<Vec<Told>>>,
     stop: Stop,
     thread: Option<JoinHandle<()>>,
@@ -24,7 +24,7 @@ pub(crate) struct Desk {
 /// How a desk is set up.
 pub(crate) struct Setup {
     /// Below the desk's folder.
-    pub(crate) recipe: PathBuf,
+    pub(crate) recipes: Vec<PathBuf>,
     /// Where maps go, below the desk's folder.
     pub(crate) output: PathBuf,
     pub(crate) options: Options,
@@ -36,7 +36,7 @@ pub(crate) struct Setup {
 impl Default for Setup {
     fn default() -> Setup {
         Setup {
-            recipe: "recipe.ron".into(),
+            recipes: vec!["recipe.ron".into()],
             output: "out".into(),
             options: Options::default(),
             world: Arc::new(Disk),
@@ -57,6 +57,15 @@ impl Desk {
     pub(crate) fn with(setup: Setup, lay: impl FnOnce(&Path)) -> Desk {
         let folder = tempfile::tempdir().unwrap();
         lay(folder.path());
+        Desk::at_folder(Arc::new(folder), setup)
+    }
+
+    /// Another watch in the same folder.
+    pub(crate) fn beside(&self, setup: Setup) -> Desk {
+        Desk::at_folder(Arc::clone(&self.folder), setup)
+    }
+
+    fn at_folder(folder: Arc<TempDir>, setup: Setup) -> Desk {
         let options = EngineOptions {
             threads: Some(1),
             memory: 16 << 20,
@@ -64,18 +73,18 @@ impl Desk {
             ..EngineOptions::default()
         };
         let engine = Engine::new(Arc::clone(&setup.world), options).unwrap();
-        let followed = Followed {
-            recipe: folder.path().join(setup.recipe),
-            folder: folder.path().join(setup.output),
+        let followed = setup.recipes.iter().map(|recipe| Followed {
+            recipe: folder.path().join(recipe),
+            folder: folder.path().join(&setup.output),
             ..Followed::default()
-        };
+        });
         let told: Arc<Mutex<Vec<Told>>> = Arc::default();
         let heard = Arc::clone(&told);
         let hear = move |_: &Path, it: Told| heard.lock().unwrap().push(it);
         let watch = Watch::new(
             engine,
             setup.world,
-            vec![followed],
+            followed.collect(),
             setup.options,
             Arc::new(hear),
         );

@@ -28,7 +28,7 @@ fn dye(colour: u32) -> String {
     )
 }
 
-fn picture(path: &Path, colour: u32) {
+pub(crate) fn picture(path: &Path, colour: u32) {
     let [_, red, green, blue] = colour.to_be_bytes();
     let image = image::RgbImage::from_pixel(64, 64, image::Rgb([red, green, blue]));
     let folder = path.parent().unwrap();
@@ -37,7 +37,7 @@ fn picture(path: &Path, colour: u32) {
 }
 
 /// A recipe that shows the picture `file` and nothing else.
-fn shows(file: &str) -> String {
+pub(crate) fn shows(file: &str) -> String {
     format!(
         r#"(
     nodes: {{
@@ -159,7 +159,7 @@ fn maps_in_the_folder_of_the_recipe_start_nothing() {
 #[test]
 fn a_folder_that_is_renamed_and_brought_back_is_followed_again() {
     let setup = Setup {
-        recipe: "work/deep/recipe.ron".into(),
+        recipes: vec!["work/deep/recipe.ron".into()],
         ..Setup::default()
     };
     let desk = Desk::with(setup, |folder| {

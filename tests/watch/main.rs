@@ -5,6 +5,8 @@ mod desk;
 mod files;
 mod mistakes;
 mod notices;
+mod odd;
+mod overtaken;
 mod runs;
 mod saves;
 mod session;

@@ -2,6 +2,7 @@
 
 use super::desk::{Desk, Setup, pause, recipe, recipe_of};
 use std::fs;
+use std::time::{Duration, Instant};
 use yosegi::watch::Told;
 
 #[test]
@@ -36,16 +37,21 @@ fn it_says_which_paths_it_waits_for() {
 fn what_is_mended_at_once_is_never_told() {
     let desk = Desk::new();
     assert!(desk.shows(1));
+    let mut was_in_time = true;
     for colour in 2..6 {
+        let start = Instant::now();
         desk.save("");
-        pause(100);
+        pause(80);
         desk.save(&recipe(colour)[..60]);
-        pause(100);
+        pause(80);
         desk.save(&recipe(colour));
+        // A machine that is busy may take its time: then it is right to tell.
+        was_in_time &= start.elapsed() < Duration::from_millis(240);
         assert!(desk.shows(colour));
     }
     pause(400);
-    assert_eq!(desk.count(|told| matches!(told, Told::Failed(_))), 0);
+    let told = desk.count(|told| matches!(told, Told::Failed(_)));
+    assert!(told == 0 || !was_in_time, "{told}");
 }
 
 #[test]
@@ -75,7 +81,7 @@ fn a_recipe_that_is_not_there_is_waited_for() {
 #[test]
 fn a_folder_that_is_not_there_is_waited_for() {
     let setup = Setup {
-        recipe: "far/away/recipe.ron".into(),
+        recipes: vec!["far/away/recipe.ron".into()],
         ..Setup::default()
     };
     let desk = Desk::with(setup, |_| ());

@@ -1,83 +1,12 @@
 //! Notices that are lost, that do not come, and that the system refuses.
 
-use super::desk::{Desk, Setup, recipe};
-use std::collections::BTreeSet;
+use super::desk::{Desk, Setup, pause, recipe};
+use super::odd::{Behaviour, Odd};
 use std::fs;
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 use yosegi::watch::{Options, Told};
-use yosegi::world::{Disk, Heard, Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
-
-/// What a disk does about notices.
-#[derive(Clone, Copy)]
-enum Behaviour {
-    /// Promises them and sends none, as network drives do.
-    Silent,
-    /// Refuses, as when a limit is reached.
-    Refused,
-    /// Refuses to follow anything.
-    Limited,
-}
-
-/// The disk with other notices.
-struct Odd {
-    behaviour: Behaviour,
-    wake: Mutex<Option<Wake>>,
-}
-
-impl Odd {
-    fn new(behaviour: Behaviour) -> Arc<Odd> {
-        let wake = Mutex::new(None);
-        Arc::new(Odd { behaviour, wake })
-    }
-}
-
-struct Deaf(Behaviour);
-
-impl Notices for Deaf {
-    fn follow(&mut self, _: &BTreeSet<PathBuf>) -> Result<bool, NoticesError> {
-        match self.0 {
-            Behaviour::Limited => Err(NoticesError::new("the limit is reached")),
-            _ => Ok(false),
-        }
-    }
-}
-
-impl World for Odd {
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        Disk.read(path)
-    }
-
-    fn open(&self, path: &Path) -> io::Result<Box<dyn Read>> {
-        Disk.open(path)
-    }
-
-    fn real_path(&self, path: &Path) -> io::Result<PathBuf> {
-        Disk.real_path(path)
-    }
-
-    fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
-        Disk.create(path)
-    }
-
-    fn list(&self, folder: &Path) -> io::Result<Vec<Listed>> {
-        Disk.list(folder)
-    }
-
-    fn stamp(&self, path: &Path) -> io::Result<Stamp> {
-        Disk.stamp(path)
-    }
-
-    fn notices(&self, wake: Wake) -> Result<Box<dyn Notices>, NoticesError> {
-        *self.wake.lock().unwrap() = Some(wake);
-        match self.behaviour {
-            Behaviour::Refused => Err(NoticesError::new("there are none")),
-            behaviour => Ok(Box::new(Deaf(behaviour))),
-        }
-    }
-}
+use yosegi::world::Heard;
 
 fn desk(world: Arc<Odd>, options: Options) -> Desk {
     let setup = Setup {
@@ -125,10 +54,13 @@ fn where_promised_notices_do_not_come_that_is_found_out() {
 
 #[test]
 fn lost_notices_make_everything_be_read_again() {
-    let world = Odd::new(Behaviour::Silent);
+    let world = Odd::new(Behaviour::Stampless);
     let desk = desk(Arc::clone(&world), Options::default());
     assert!(desk.shows(1));
-    // The same size and the same stamp: only reading finds it, and only the loss makes it read.
+    // Every stamp is the same: only reading finds it, and only the loss makes it read.
+    desk.save(&recipe(9));
+    pause(1300);
+    assert_eq!(desk.colour(), Some(1));
     for colour in 2..5 {
         desk.save(&recipe(colour));
         let wake = world.wake.lock().unwrap().clone().unwrap();
@@ -161,4 +93,22 @@ fn a_flood_of_notices_hides_no_save() {
     }
     desk.save(&recipe(2));
     assert!(desk.shows(2));
+}
+
+#[test]
+fn half_saved_files_are_no_mistakes_between_rare_looks() {
+    let options = Options {
+        preview: false,
+        poll: Some(Duration::from_millis(600)),
+    };
+    let desk = desk(Odd::new(Behaviour::Silent), options);
+    assert!(desk.shows(1));
+    for colour in 2..8 {
+        desk.save("");
+        pause(150);
+        desk.save(&recipe(colour));
+        pause(370);
+    }
+    assert!(desk.shows(7));
+    assert_eq!(desk.count(|told| matches!(told, Told::Failed(_))), 0);
 }
