@@ -5,6 +5,7 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 use yosegi::diagnostics::{Code, Diagnostic, render_all, render_all_styled, render_json};
 use yosegi::engine::RunError;
 use yosegi::graph::{Graph, Settings, load};
@@ -82,6 +83,14 @@ pub(super) fn note(text: &str) {
 /// What kept the first line from being printed that was not.
 static NOT_PRINTED: OnceLock<String> = OnceLock::new();
 
+/// Whether the reader of stdout has gone.
+static UNREAD: AtomicBool = AtomicBool::new(false);
+
+/// Whether nobody reads stdout any more.
+pub(super) fn is_unread() -> bool {
+    UNREAD.load(Ordering::Relaxed)
+}
+
 /// Prints a line of the result. A reader that has seen enough is no failure, and does not stop the
 /// program; any other fault is told by [`at_the_end`].
 pub(super) fn line(text: &str) {
@@ -89,7 +98,8 @@ pub(super) fn line(text: &str) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             NOT_PRINTED.get_or_init(|| error.to_string());
         }
-        _ => {}
+        Err(_) => UNREAD.store(true, Ordering::Relaxed),
+        Ok(()) => {}
     }
 }
 

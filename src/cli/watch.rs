@@ -4,11 +4,11 @@ use super::listen::Listen;
 use super::{Exit, bytes, options, render, report, signals};
 use serde_json::{Value as Json, json};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 use yosegi::diagnostics::{Diagnostic, render_json};
 use yosegi::engine::{Listener, Options};
-use yosegi::watch::{self, Followed, Rendered, Told, Watch};
+use yosegi::watch::{self, Followed, Rendered, Stop, Told, Watch};
 use yosegi::world::{Disk, abandon_unfinished};
 
 #[derive(clap::Args)]
@@ -47,7 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
     };
     let recipes = &arguments.render.recipes.recipes;
     let followed = recipes.iter().map(|recipe| followed(arguments, recipe));
-    let screen = Screen::new(arguments.render.recipe.json);
+    let screen = Arc::new(Screen::new(arguments.render.recipe.json));
+    let audience = Arc::clone(&screen);
     let watch = Watch::new(
         engine,
         Arc::new(Disk),
@@ -56,9 +57,10 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
             preview: arguments.preview,
             poll: arguments.poll.map(Duration::from_millis),
         },
-        Arc::new(move |recipe, told| screen.show(recipe, told)),
+        Arc::new(move |recipe, told| audience.show(recipe, told)),
     );
     let stop = watch.stop();
+    screen.stop.get_or_init(|| stop.clone());
     let signals = signals::listen(move || stop.stop());
     let watched = watch.run();
     // A run that could not stop may still be writing.
@@ -67,7 +69,8 @@ pub(super) fn run(arguments: &Arguments) -> Exit {
         report::problem(&format!("cannot start a thread: {error}"));
         return Exit::Files;
     }
-    signals.exit().unwrap_or(Exit::Interrupted)
+    // Without a signal it ends only because nobody reads what it says.
+    signals.exit().unwrap_or(Exit::Done)
 }
 
 fn followed(arguments: &Arguments, recipe: &Path) -> Followed {
@@ -85,6 +88,8 @@ struct Screen {
     json: bool,
     /// Of the run that is going on.
     listen: Mutex<Listen>,
+    /// Ends the watch when nobody reads what it prints.
+    stop: OnceLock<Stop>,
 }
 
 impl Screen {
@@ -92,6 +97,7 @@ impl Screen {
         Screen {
             json,
             listen: Mutex::new(Listen::new(json)),
+            stop: OnceLock::new(),
         }
     }
 
@@ -100,6 +106,11 @@ impl Screen {
             lines(told).into_iter().for_each(|line| print(recipe, line));
         } else {
             self.tell(recipe, told);
+        }
+        if report::is_unread()
+            && let Some(stop) = self.stop.get()
+        {
+            stop.stop();
         }
     }
 
@@ -110,6 +121,7 @@ impl Screen {
             return;
         }
         listen.finish();
+        let placed = listen.placed();
         *listen = Listen::new(false);
         let name = recipe.display();
         match told {
@@ -126,7 +138,13 @@ impl Screen {
                 report::diagnostics(&rendered.warnings, false);
                 report::line(&format!("{name}: {}", sentence(&rendered)));
             }
-            Told::Failed(failed) => report::diagnostics(failed.diagnostics(), false),
+            Told::Failed(failed) => {
+                report::diagnostics(failed.diagnostics(), false);
+                if !placed.is_empty() {
+                    let paths = some_of(&shown(&placed));
+                    report::line(&format!("{name}: {paths} do not depend on that"));
+                }
+            }
             Told::Waiting(paths) => report::line(&format!(
                 "{name}: waiting for a change of {}",
                 some_of(&shown(&paths))

@@ -25,7 +25,7 @@ pub enum Told {
     Rendered(Rendered),
     /// The recipe cannot be read or rendered; the maps that are there stay.
     Failed(Failed),
-    /// What it waits for now: a change of any of these paths.
+    /// What it waits for now: a change of any of these files, as they are named, the recipe first.
     Waiting(Vec<PathBuf>),
     /// The files are looked at again and again, because notices of changes do not come.
     Polling {

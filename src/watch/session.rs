@@ -75,6 +75,12 @@ impl Session {
         paths
     }
 
+    /// The files that a change is waited for, the recipe first.
+    fn named(&self) -> Vec<PathBuf> {
+        let recipe = std::iter::once(self.followed.recipe.clone());
+        recipe.chain(self.trace.named()).collect()
+    }
+
     /// Whether a change of one of these paths may matter.
     pub(super) fn reads_any(&self, paths: &BTreeSet<PathBuf>) -> bool {
         !self.paths().is_disjoint(paths)
@@ -116,10 +122,7 @@ impl Session {
             return None;
         }
         match std::mem::replace(&mut self.state, State::Settled) {
-            State::Failing(failed) => Some([
-                Told::Failed(failed),
-                Told::Waiting(self.paths().into_iter().collect()),
-            ]),
+            State::Failing(failed) => Some([Told::Failed(failed), Told::Waiting(self.named())]),
             other => {
                 self.state = other;
                 None

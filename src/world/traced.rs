@@ -54,6 +54,17 @@ impl Trace {
         self.lock().keys().map(|it| it.path().to_owned()).collect()
     }
 
+    /// The files that were looked for, as they are named: what a person would change.
+    pub fn named(&self) -> BTreeSet<PathBuf> {
+        let answers = self.lock();
+        let named = answers.keys().filter_map(|question| match question {
+            // Folders are asked for as well: to see whether files really lie in them.
+            Question::RealPath(path) if path.extension().is_some() => Some(path.clone()),
+            _ => None,
+        });
+        named.collect()
+    }
+
     /// A path about which the world says something else now than it did; `None` if there is none.
     /// Contents count, and neither time stamps nor modes.
     pub fn changed(&self, world: &dyn World, doubt: Doubt<'_>) -> Option<PathBuf> {

@@ -12,6 +12,8 @@ mod shell;
 #[cfg(unix)]
 mod signals;
 mod tell;
+#[cfg(unix)]
+mod watch;
 mod why;
 
 use assert_cmd::Command;

@@ -21,14 +21,14 @@ const LARGE: [&str; 8] = [
     "2",
 ];
 
-fn send(signal: &str, child: &Child) {
+pub(super) fn send(signal: &str, child: &Child) {
     let status = Process::new("kill")
         .args([&format!("-{signal}"), &child.id().to_string()])
         .status();
     assert!(status.unwrap().success());
 }
 
-fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+pub(super) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
     let start = Instant::now();
     while !is_so() {
         assert!(start.elapsed() < LONG, "waited for {what}");
@@ -45,7 +45,7 @@ fn is_writing(place: &Place) -> bool {
 }
 
 /// Waits for the end; gives the exit code.
-fn end(mut child: Child) -> i32 {
+pub(super) fn end(mut child: Child) -> i32 {
     let mut status = None;
     wait_until("the end", || {
         status = child.try_wait().unwrap();
@@ -135,18 +135,24 @@ fn a_second_signal_ends_at_once_and_tears_nothing() {
 fn a_run_that_cannot_stop_is_ended_and_leaves_nothing() {
     let (place, old) = rendered();
     let (reader, mut writer) = std::io::pipe().unwrap();
-    // All that a pipe holds but one page, for the events before the first write.
-    writer.write_all(&[b'\n'; (16 - 1) * 4096]).unwrap();
+    // All that a pipe holds but some bytes, for the events before the first write.
+    writer.write_all(&[b'\n'; 16 * 4096 - 700]).unwrap();
     let mut process = Process::new(env!("CARGO_BIN_EXE_yosegi"));
     process.current_dir(place.folder.path()).args(LARGE);
     process.args(["--no-cache", "--json", "--tile", "8"]);
     let child = process.stdout(writer).spawn().unwrap();
     drop(process);
     wait_until("the first write", || is_writing(&place));
-    std::thread::sleep(Duration::from_millis(300));
+    // Ten events a second are more than is left.
+    std::thread::sleep(Duration::from_millis(1500));
     let (signal, number) = heard()[0];
+    let start = Instant::now();
     send(signal, &child);
     assert_eq!(end(child), 128 + number);
+    assert!(
+        start.elapsed() > Duration::from_millis(300),
+        "it could stop"
+    );
     assert!(place.files("out") == old);
     drop(reader);
 }

@@ -30,7 +30,7 @@ fn it_says_which_paths_it_waits_for() {
     let Told::Waiting(paths) = &desk.told()[index] else {
         unreachable!("it was found")
     };
-    assert!(paths.contains(&desk.at("recipe.ron")), "{paths:?}");
+    assert_eq!(paths, &[desk.at("recipe.ron")]);
 }
 
 #[test]
