@@ -35,7 +35,7 @@ fn each_save_has_a_line_with_what_ran_and_what_was_written() {
     let first = line_with(&mut lines, " ms");
     assert!(first.starts_with("recipe.ron: "), "{first}");
     assert!(
-        first.contains("wrote out/") && first.contains("ran look"),
+        first.contains("wrote out/") && first.contains("ran board look plank"),
         "{first}"
     );
     place.write("recipe.ron", &BOARD.replace("#e8c99b", "#ffffff"));
@@ -54,7 +54,7 @@ fn each_save_has_a_line_with_what_ran_and_what_was_written() {
     let waiting = line_with(&mut lines, "waiting");
     assert_eq!(
         waiting,
-        "recipe.ron: waiting for a change of recipe.ron nodes/slicecut.ron ../nodes/slicecut.ron"
+        "recipe.ron: waiting for a change of recipe.ron ../nodes/slicecut.ron nodes/slicecut.ron"
     );
     send("TERM", &child);
     assert_eq!(end(child), 143);
