@@ -113,6 +113,14 @@ struct StoppableFile {
     cancel: Cancel,
 }
 
+impl Read for StoppableFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.cancel.check()?;
+        let length = buffer.len().min(PIECE);
+        self.file.read(&mut buffer[..length])
+    }
+}
+
 impl Write for StoppableFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.cancel.check()?;

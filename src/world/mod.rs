@@ -143,8 +143,9 @@ fn are_apart(one: SystemTime, other: SystemTime, most: Duration) -> bool {
     apart.unwrap_or_else(|error| error.duration()) > most
 }
 
-/// A file that is not there yet: dropped without a commit, it leaves nothing behind.
-pub trait PendingFile: Write + Seek + Send {
+/// A file that is not there yet, in which what was written can be read again: dropped without a commit, it
+/// leaves nothing behind.
+pub trait PendingFile: Read + Write + Seek + Send {
     /// Waits until what was written is on the disk: after a loss of power the file is then the old one or
     /// the new one, never an empty one.
     ///

@@ -2,7 +2,7 @@
 
 use super::*;
 use std::fs;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tempfile::TempDir;
@@ -109,6 +109,12 @@ struct FaultyFile {
     bytes: Vec<u8>,
     path: PathBuf,
     world: Faulty,
+}
+
+impl Read for FaultyFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.file.read(buffer)
+    }
 }
 
 impl Write for FaultyFile {

@@ -172,6 +172,7 @@ fn behind_links(path: &Path) -> io::Result<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Seek;
 
     fn write(path: &Path, bytes: &[u8]) {
         let mut file = Disk.create(path).unwrap();
@@ -193,6 +194,8 @@ mod tests {
         let path = folder.path().join("new/map.png");
         let mut file = Disk.create(&path).unwrap();
         file.write_all(b"half").unwrap();
+        file.rewind().unwrap();
+        assert_eq!(io::read_to_string(&mut file).unwrap(), "half");
         assert!(!path.exists());
         drop(file);
         assert_eq!(names(&folder.path().join("new")), [""; 0]);
