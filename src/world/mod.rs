@@ -8,6 +8,7 @@ mod memory;
 mod notices;
 mod stamp;
 mod sweep;
+mod trace;
 mod traced;
 mod unfinished;
 
@@ -15,7 +16,8 @@ pub use disk::Disk;
 pub use memory::Memory;
 pub use notices::{Heard, Notices, NoticesError, Wake};
 pub use stamp::Stamp;
-pub use traced::{Doubt, Trace, Traced};
+pub use trace::{Doubt, Trace};
+pub use traced::Traced;
 pub use unfinished::abandon_unfinished;
 
 use std::io::{self, Read, Seek, Write};
