@@ -392,6 +392,30 @@ fn count(folder: &Path) -> usize {
 }
 
 #[test]
+fn cleaning_removes_no_folder_from_which_it_removed_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    // Named as a store names them, and of someone else.
+    let empty = ["map/ab", "plan", "unfinished"].map(|name| folder.path().join(name));
+    for place in &empty {
+        fs::create_dir_all(place).unwrap();
+    }
+    clean_store(&Disk, folder.path()).unwrap();
+    assert!(empty.iter().all(|place| place.is_dir()));
+
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().join("store");
+    let workshop = on_disk(&folder, Path::new("store"));
+    render(&workshop);
+    clean_store(&Disk, &store).unwrap();
+    assert!(!store.exists());
+    render(&workshop);
+    fs::create_dir(store.join("mine")).unwrap();
+    clean_store(&Disk, &store).unwrap();
+    let left = fs::read_dir(&store).unwrap().map(|it| it.unwrap().path());
+    assert_eq!(left.collect::<Vec<_>>(), [store.join("mine")]);
+}
+
+#[test]
 fn much_junk_in_the_store_stays_and_costs_no_map() {
     let workshop = workshop(options());
     for number in 0..20_000 {
