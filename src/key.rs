@@ -93,6 +93,12 @@ impl KeyHasher {
         self
     }
 
+    /// Adds bytes without their length: nothing but more of the same kind may follow.
+    pub fn part(&mut self, bytes: &[u8]) -> &mut KeyHasher {
+        self.0.update(bytes);
+        self
+    }
+
     /// Adds a number; -0 and 0 are the same.
     pub fn number(&mut self, number: f64) -> &mut KeyHasher {
         self.0.update(&(number + 0.0).to_bits().to_le_bytes());

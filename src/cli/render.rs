@@ -3,6 +3,7 @@
 use super::listen::Listen;
 use super::options::{self, EngineArguments, SizeArguments, StoreArguments};
 use super::{Exit, RecipeArguments, Recipes, report, signals};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use yosegi::engine::{Cancel, Engine, Options, Render};
 
@@ -104,11 +105,29 @@ pub(super) fn folder_of(arguments: &Arguments, recipe: &Path) -> PathBuf {
     }
 }
 
+/// Refuses recipes that would put their maps into one folder, where they could replace each other's.
+fn refuse_shared_folders(arguments: &Arguments) -> Result<(), String> {
+    let mut taken = BTreeMap::new();
+    for recipe in &arguments.recipes.recipes {
+        let folder = folder_of(arguments, recipe);
+        if let Some(other) = taken.insert(folder.clone(), recipe) {
+            let (other, recipe) = (other.display(), recipe.display());
+            return Err(format!(
+                "the maps of `{other}` and of `{recipe}` would both go to `{}`: name each recipe once, \
+                 and recipes with equal file names in calls of their own",
+                folder.display()
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// How an engine works for these arguments.
 ///
 /// # Errors
-/// If this machine lacks the vector instructions that are asked for.
+/// If two recipes would share a folder, or if this machine lacks the vector instructions that are asked for.
 pub(super) fn engine_options(arguments: &Arguments) -> Result<Options, String> {
+    refuse_shared_folders(arguments)?;
     Ok(Options {
         threads: arguments.engine.threads.map(usize::from),
         tile: arguments.tile,

@@ -7,11 +7,11 @@ use super::plan::Plan;
 use super::progress::Meter;
 use super::store::{Family, Store, ToldOnce};
 use super::verify::Verification;
+use super::write::Written;
 use super::{Cancel, Engine, FlatPiece, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::graph::{Graph, no_output};
 use crate::key::Key;
-use crate::output::Faults;
 use crate::world::World;
 use petgraph::graph::NodeIndex;
 use serde::{Deserialize, Serialize};
@@ -289,12 +289,12 @@ impl Output<'_> {
         let missing: Vec<&WantedMap> = wanted.iter().filter(|map| !is_there(map)).collect();
         let share = [missing.len(), wanted.len() - missing.len()];
         meter.count().begin(self.name(), share, pixels);
-        let faults = if missing.is_empty() {
+        let written = if missing.is_empty() {
             vec![]
         } else {
             self.write_maps(maps, &target, &missing, meter)?
         };
-        self.remember(&wanted, built, missing.into_iter().zip(faults));
+        self.remember(&wanted, built, missing.into_iter().zip(written));
         let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
         self.request.listener.hear(Event::OutputDone {
             output: self.name().to_owned(),
@@ -318,7 +318,7 @@ impl Output<'_> {
         &self,
         wanted: &[WantedMap],
         built: &Built,
-        mut written: impl Iterator<Item = (&'m WantedMap, Faults)> + Clone,
+        mut written: impl Iterator<Item = (&'m WantedMap, Written)> + Clone,
     ) {
         let Some(store) = &self.engine.store else {
             return;
@@ -329,9 +329,9 @@ impl Output<'_> {
         };
         self.verify(&record, written.clone());
         let stored = written
-            .try_for_each(|(map, faults)| {
-                let faults = [faults.non_finite, faults.clamped];
-                store.put_map(&map.key, &self.path(map), faults)
+            .try_for_each(|(map, written)| match written.record() {
+                Some(record) => store.put_map(&map.key, &self.path(map), &record),
+                None => Ok(()),
             })
             .and_then(|()| postcard::to_stdvec(&record).map_err(io::Error::other))
             .and_then(|bytes| store.put(Family::Plan, &self.plan_key(), &bytes));

@@ -32,7 +32,7 @@ impl Builder<'_> {
             return Ok(structure);
         }
         let start = Instant::now();
-        let structure = make()?;
+        let structure = self.whole(make)?;
         self.verify_decoded(node, key, &structure);
         let bytes = usize::try_from(structure.taken).unwrap_or(usize::MAX);
         self.memory
@@ -60,7 +60,7 @@ impl Builder<'_> {
             self.listener.hear(reused);
             return Ok(structure);
         }
-        let structure = make()?;
+        let structure = self.whole(make)?;
         let bytes = content::encode(&structure.values, &structure.warnings);
         self.verify_structure(node, key, &bytes);
         self.memory
@@ -76,6 +76,19 @@ impl Builder<'_> {
             node: name,
             milliseconds,
         });
+        Ok(structure)
+    }
+
+    /// What `make` gives, unless the run was cancelled meanwhile: then it may have broken off, and must not be
+    /// remembered.
+    fn whole(
+        &self,
+        make: impl FnOnce() -> Result<Structure, Failure>,
+    ) -> Result<Structure, Failure> {
+        let structure = make()?;
+        if self.cancel.is_cancelled() {
+            return Err(Failure::new("the run was cancelled"));
+        }
         Ok(structure)
     }
 

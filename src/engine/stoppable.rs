@@ -113,6 +113,14 @@ struct StoppableFile {
     cancel: Cancel,
 }
 
+impl Read for StoppableFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.cancel.check()?;
+        let length = buffer.len().min(PIECE);
+        self.file.read(&mut buffer[..length])
+    }
+}
+
 impl Write for StoppableFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.cancel.check()?;
@@ -149,10 +157,53 @@ impl PendingFile for StoppableFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::forwarded;
+    use crate::world::{Trace, Traced, forwarded};
+    use std::sync::atomic::{AtomicU64, Ordering};
 
     #[test]
     fn whatever_is_asked_is_passed_on() {
         forwarded::check(|world| Box::new(Stoppable::new(world, Cancel::new())));
+    }
+
+    /// A world with files without end, of which the reading cancels a run.
+    struct Endless {
+        cancel: Cancel,
+        read: Arc<AtomicU64>,
+    }
+
+    impl Read for Endless {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            self.read.fetch_add(buffer.len() as u64, Ordering::Relaxed);
+            self.cancel.cancel();
+            Ok(buffer.len())
+        }
+    }
+
+    impl World for Endless {
+        fn read(&self, _: &Path) -> io::Result<Vec<u8>> {
+            panic!("a reading that does not end")
+        }
+
+        fn open(&self, _: &Path) -> io::Result<Box<dyn Read>> {
+            let (cancel, read) = (self.cancel.clone(), Arc::clone(&self.read));
+            Ok(Box::new(Endless { cancel, read }))
+        }
+
+        fn create(&self, _: &Path) -> io::Result<Box<dyn PendingFile>> {
+            Err(io::ErrorKind::Unsupported.into())
+        }
+    }
+
+    #[test]
+    fn reading_ends_with_its_piece_even_if_it_is_noted() {
+        let (cancel, read) = (Cancel::new(), Arc::<AtomicU64>::default());
+        let endless = Arc::new(Endless {
+            cancel: cancel.clone(),
+            read: Arc::clone(&read),
+        });
+        let traced = Traced::new(endless, Trace::new(), |_| {});
+        let world = Stoppable::new(Arc::new(traced), cancel);
+        assert!(world.read(Path::new("photograph")).is_err());
+        assert!((1..=PIECE as u64).contains(&read.load(Ordering::Relaxed)));
     }
 }

@@ -9,12 +9,12 @@ use super::event::{Event, Listener};
 use super::memory::{Memory, Structure};
 use super::render::{Output, WantedMap};
 use super::store::Family;
+use super::write::Written;
 use super::{Engine, RunError, known::OutputRecord};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::field::{ColumnCache, Columns};
 use crate::graph::Node;
 use crate::key::Key;
-use crate::output::Faults;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -111,7 +111,7 @@ impl Output<'_> {
     pub(super) fn verify<'m>(
         &self,
         made: &OutputRecord,
-        painted: impl Iterator<Item = (&'m WantedMap, Faults)>,
+        painted: impl Iterator<Item = (&'m WantedMap, Written)>,
     ) {
         let Some((verification, store)) =
             self.verification.as_ref().zip(self.engine.store.as_ref())
@@ -125,13 +125,11 @@ impl Output<'_> {
                 difference(node, "what is known", "the store", &plan)
             });
         }
-        for (map, faults) in painted {
+        for (map, written) in painted {
             let Some(known) = store.map(&map.key) else {
                 continue;
             };
-            let file = store.hash(&self.path(map)).ok();
-            let is_same = file == Some((known.file, known.bytes))
-                && known.faults == [faults.non_finite, faults.clamped];
+            let is_same = written.record() == Some(known);
             let what = format!("the map `{}`", map.channel);
             verification.compare(is_same, || difference(node, &what, "the store", &map.key));
         }

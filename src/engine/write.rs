@@ -4,30 +4,55 @@ use super::event::Event;
 use super::paint::{Painter, Sheet};
 use super::progress::Meter;
 use super::render::{Output, WantedMap};
+use super::store::MapRecord;
 use super::{FlatPiece, RunError};
 use crate::field::{ColumnCache, Field, Program, RunContext, Target};
-use crate::output::{self, Encoder, Faults, MapRequest};
+use crate::output::{self, Contents, Encoder, Faults, MapRequest, MapWriter, Placing};
 use crate::value::Maps;
 use rayon::prelude::*;
 use std::io;
+use std::path::Path;
+
+/// What is known of a map that is in its place.
+#[derive(Clone)]
+pub(super) struct Written {
+    /// What is wrong with its samples.
+    pub(super) faults: Faults,
+    /// Its hash and size, if there is a store to remember them.
+    pub(super) contents: Contents,
+}
+
+impl Written {
+    /// What the store may remember; `None` if nothing was noted for it.
+    pub(super) fn record(&self) -> Option<MapRecord> {
+        let (file, bytes) = *self.contents.get()?;
+        Some(MapRecord {
+            faults: [self.faults.non_finite, self.faults.clamped],
+            file,
+            bytes,
+        })
+    }
+}
 
 impl Output<'_> {
-    /// Paints maps and puts them in their places; gives what is wrong with the samples of each.
+    /// Paints maps and puts them in their places; gives what is known of each then.
     pub(super) fn write_maps(
         &self,
         maps: &Maps,
         target: &FlatPiece,
         missing: &[&WantedMap],
         meter: &Meter<'_>,
-    ) -> Result<Vec<Faults>, RunError> {
+    ) -> Result<Vec<Written>, RunError> {
         let field = |map: &&WantedMap| self.field(maps, &map.channel).0;
         let fields: Vec<Field> = missing.iter().map(field).collect();
         let cancel = &self.engine.cancel;
         let program = Program::compile_until(&fields, cancel).ok_or(RunError::Cancelled)?;
         self.check_program(&program)?;
+        let contents: Vec<Contents> = missing.iter().map(|_| Contents::default()).collect();
         let sheets: io::Result<Vec<Sheet>> = missing
             .iter()
-            .map(|map| self.sheet(maps, target, map))
+            .zip(&contents)
+            .map(|(map, contents)| self.sheet(maps, target, map, contents))
             .collect();
         let mut sheets = sheets.map_err(|error| RunError::not_written(&error))?;
         let (context, columns) = (self.engine.context(), self.verified_columns());
@@ -46,9 +71,12 @@ impl Output<'_> {
             meter,
         };
         painter.paint(&mut sheets)?;
-        let faults = sheets.iter().map(|sheet| sheet.faults).collect();
+        let faults: Vec<Faults> = sheets.iter().map(|sheet| sheet.faults).collect();
         self.finish(sheets, missing)?;
-        Ok(faults)
+        let written = faults.into_iter().zip(contents);
+        Ok(written
+            .map(|(faults, contents)| Written { faults, contents })
+            .collect())
     }
 
     /// Puts the maps in their places, all at the same time, since the disk takes its time over each.
@@ -71,7 +99,13 @@ impl Output<'_> {
         result
     }
 
-    fn sheet(&self, maps: &Maps, target: &FlatPiece, map: &WantedMap) -> io::Result<Sheet> {
+    fn sheet(
+        &self,
+        maps: &Maps,
+        target: &FlatPiece,
+        map: &WantedMap,
+        contents: &Contents,
+    ) -> io::Result<Sheet> {
         let (_, kind) = self.field(maps, &map.channel);
         let request = MapRequest {
             pixels: target.pixels(),
@@ -82,16 +116,24 @@ impl Output<'_> {
             channel: map.channel.clone(),
         };
         let range = maps.ranges.get(&map.channel).copied();
-        let (world, cancel) = (&*self.engine.world, &self.engine.cancel);
-        let create = if self.engine.options.durable {
-            output::create_durable
-        } else {
-            output::create_until
-        };
         Ok(Sheet {
             encoder: Encoder::new(kind, maps.format, range),
-            writer: create(world, &self.path(map), &request, cancel)?,
+            writer: self.writer(&self.path(map), &request, contents)?,
             faults: Faults::default(),
         })
+    }
+
+    fn writer(
+        &self,
+        path: &Path,
+        request: &MapRequest,
+        contents: &Contents,
+    ) -> io::Result<Box<dyn MapWriter>> {
+        let engine = &self.engine;
+        let placing = Placing {
+            durable: engine.options.durable,
+            contents: engine.store.is_some().then(|| Contents::clone(contents)),
+        };
+        output::create_placing(&*engine.world, path, request, &engine.cancel, placing)
     }
 }

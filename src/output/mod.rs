@@ -8,6 +8,7 @@ mod bmp;
 mod deflate;
 mod encode;
 mod exr;
+mod placing;
 mod png;
 mod srgb;
 mod strips;
@@ -15,12 +16,13 @@ mod tiff;
 
 pub use bmp::{LARGEST_BMP, bmp_bytes};
 pub use encode::{Encoder, Faults, MapKind};
+pub(crate) use placing::{Contents, Placing};
 
 use crate::cancel::Cancel;
 use crate::key::Key;
 use crate::value::{FileType, MapFormat};
 use crate::world::{PendingFile, World};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The name under which PNG text, EXR attributes and the description of a TIFF carry the key of a map.
@@ -143,17 +145,20 @@ pub(crate) fn create_until(
     start(path, request, cancel, || world.create(path))
 }
 
-/// As [`create_until`]; the map is on the disk before it replaces what is there, so that a loss of power
-/// leaves the one or the other.
-pub(crate) fn create_durable(
+/// As [`create_until`]; `placing` says what comes before the map is put in place.
+pub(crate) fn create_placing(
     world: &dyn World,
     path: &Path,
     request: &MapRequest,
     cancel: &Cancel,
+    placing: Placing,
 ) -> io::Result<Box<dyn MapWriter>> {
-    start(path, request, cancel, || {
-        Ok(Box::new(Durable(world.create(path)?)))
-    })
+    start(
+        path,
+        request,
+        cancel,
+        || Ok(placing.of(world.create(path)?)),
+    )
 }
 
 fn start(
@@ -180,36 +185,6 @@ fn start(
     }))
 }
 
-/// A file that is on the disk before it is in its place.
-struct Durable(Box<dyn PendingFile>);
-
-impl Write for Durable {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
-    }
-}
-
-impl Seek for Durable {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.0.seek(to)
-    }
-}
-
-impl PendingFile for Durable {
-    fn sync(&mut self) -> io::Result<()> {
-        self.0.sync()
-    }
-
-    fn commit(mut self: Box<Self>) -> io::Result<()> {
-        self.0.sync()?;
-        self.0.commit()
-    }
-}
-
 /// The key that a map was written with, read from the start of the file; `None` if there is no such
 /// file, or it is no PNG, TIFF or OpenEXR, or it carries no key. A BMP has no place for one.
 pub fn read_key(world: &dyn World, path: &Path) -> Option<Key> {
@@ -219,11 +194,6 @@ pub fn read_key(world: &dyn World, path: &Path) -> Option<Key> {
 /// The name of the channel that a map was written for; `None` as for [`read_key`].
 pub fn read_channel(world: &dyn World, path: &Path) -> Option<String> {
     read_text(world, path, CHANNEL_NAME)
-}
-
-/// The key in the start of a file; `None` as for [`read_key`].
-pub(crate) fn key_in(start: &[u8]) -> Option<Key> {
-    Key::from_hexadecimal(&text_in(start, KEY_NAME)?)
 }
 
 /// The text that a map carries under `name`.

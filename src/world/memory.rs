@@ -2,7 +2,7 @@
 
 use super::{Listed, PendingFile, World, are_apart};
 use std::collections::BTreeMap;
-use std::io::{self, Cursor, Seek, Write};
+use std::io::{self, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime};
@@ -117,6 +117,12 @@ struct MemoryFile {
     world: Memory,
 }
 
+impl Read for MemoryFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.bytes.read(buffer)
+    }
+}
+
 impl Write for MemoryFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.bytes.write(bytes)
@@ -153,6 +159,8 @@ mod tests {
         file.write_all(b"__w").unwrap();
         file.seek(io::SeekFrom::Start(0)).unwrap();
         file.write_all(b"ne").unwrap();
+        file.rewind().unwrap();
+        assert_eq!(io::read_to_string(&mut file).unwrap(), "new");
         assert_eq!(world.read(path).unwrap(), b"old");
         file.commit().unwrap();
         assert_eq!(world.read(path).unwrap(), b"new");

@@ -8,6 +8,7 @@ mod memory;
 mod notices;
 mod stamp;
 mod sweep;
+mod trace;
 mod traced;
 mod unfinished;
 
@@ -15,7 +16,8 @@ pub use disk::Disk;
 pub use memory::Memory;
 pub use notices::{Heard, Notices, NoticesError, Wake};
 pub use stamp::Stamp;
-pub use traced::{Doubt, Trace, Traced};
+pub use trace::{Doubt, Trace};
+pub use traced::Traced;
 pub use unfinished::abandon_unfinished;
 
 use std::io::{self, Read, Seek, Write};
@@ -143,8 +145,9 @@ fn are_apart(one: SystemTime, other: SystemTime, most: Duration) -> bool {
     apart.unwrap_or_else(|error| error.duration()) > most
 }
 
-/// A file that is not there yet: dropped without a commit, it leaves nothing behind.
-pub trait PendingFile: Write + Seek + Send {
+/// A file that is not there yet, in which what was written can be read again: dropped without a commit, it
+/// leaves nothing behind.
+pub trait PendingFile: Read + Write + Seek + Send {
     /// Waits until what was written is on the disk: after a loss of power the file is then the old one or
     /// the new one, never an empty one.
     ///

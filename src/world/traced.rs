@@ -1,180 +1,35 @@
-//! A world that notes what is read through it, so that the same can be asked again later.
+//! A world that notes what is read through it.
 
-use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Wake, World};
+use super::trace::{self, Answer, Question};
+use super::{Listed, Notices, NoticesError, PendingFile, Stamp, Trace, Wake, World};
 use crate::key::{Key, KeyHasher};
-use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, SystemTime};
-
-/// A stamp younger than this when it was taken may hide a later change: clocks of file systems tick slowly.
-const TICK: Duration = Duration::from_millis(100);
-
-/// What was asked of a world.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Question {
-    RealPath(PathBuf),
-    Read(PathBuf),
-    ReadStart(PathBuf, usize),
-}
-
-/// What the world said.
-#[derive(Clone, Debug)]
-struct Answer {
-    /// Hash of the contents or the path, or of the kind of error.
-    key: Key,
-    /// The state of the file just before, if it can be told from later ones.
-    stamp: Option<Stamp>,
-}
-
-/// The questions that a run has asked about files, with the answers; clones share them.
-#[derive(Clone, Debug, Default)]
-pub struct Trace(Arc<Mutex<BTreeMap<Question, Answer>>>);
-
-/// Which answers of a trace to doubt.
-#[derive(Clone, Copy, Debug)]
-pub enum Doubt<'a> {
-    /// All of them: everything is read again.
-    All,
-    /// Those about these paths and about what lies below them, and those whose file has another stamp.
-    About(&'a BTreeSet<PathBuf>),
-    /// Those about these paths and no others, if the file has another stamp than before it was read.
-    Lately(&'a BTreeSet<PathBuf>),
-}
-
-impl Trace {
-    /// A trace with nothing in it.
-    pub fn new() -> Trace {
-        Trace::default()
-    }
-
-    /// The paths that were asked about, whether anything was there or not.
-    pub fn paths(&self) -> BTreeSet<PathBuf> {
-        self.lock().keys().map(|it| it.path().to_owned()).collect()
-    }
-
-    /// The files that were looked for, as they are named: what a person would change.
-    pub fn named(&self) -> BTreeSet<PathBuf> {
-        let answers = self.lock();
-        let named = answers.keys().filter_map(|question| match question {
-            // Folders are asked for as well: to see whether files really lie in them.
-            Question::RealPath(path) if path.extension().is_some() => Some(path.clone()),
-            _ => None,
-        });
-        named.collect()
-    }
-
-    /// A path about which the world says something else now than it did; `None` if there is none.
-    /// Contents count, and neither time stamps nor modes.
-    pub fn changed(&self, world: &dyn World, doubt: Doubt<'_>) -> Option<PathBuf> {
-        let answers: Vec<_> = self.lock().clone().into_iter().collect();
-        let mut renewed = vec![];
-        for (question, answer) in answers {
-            if !question.is_in_doubt(&answer, world, doubt) {
-                continue;
-            }
-            let now = question.ask(world);
-            if now.key != answer.key {
-                return Some(question.path().to_owned());
-            }
-            renewed.push((question, now));
-        }
-        // What was looked at need not be looked at again until its stamp changes.
-        self.lock().extend(renewed);
-        None
-    }
-
-    fn note(&self, question: Question, answer: impl FnOnce() -> Answer) -> bool {
-        let mut answers = self.lock();
-        let is_new = !answers.contains_key(&question);
-        // The first answer counts: a run that has seen two must be repeated.
-        answers.entry(question).or_insert_with(answer);
-        is_new
-    }
-
-    fn lock(&self) -> MutexGuard<'_, BTreeMap<Question, Answer>> {
-        // Every change is one insertion, so a panic elsewhere leaves the map whole.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Question {
-    fn path(&self) -> &Path {
-        match self {
-            Question::RealPath(path) | Question::Read(path) | Question::ReadStart(path, _) => path,
-        }
-    }
-
-    fn is_in_doubt(&self, answer: &Answer, world: &dyn World, doubt: Doubt<'_>) -> bool {
-        match doubt {
-            Doubt::All => true,
-            Doubt::About(paths) if paths.iter().any(|it| self.path().starts_with(it)) => true,
-            // Where a link leads is cheap to ask.
-            Doubt::About(_) if matches!(self, Question::RealPath(_)) => true,
-            Doubt::Lately(paths) if !paths.contains(self.path()) => false,
-            Doubt::Lately(_) if matches!(self, Question::RealPath(_)) => true,
-            Doubt::About(_) | Doubt::Lately(_) => {
-                answer.stamp.is_none() || stamp(world, self.path()) != answer.stamp
-            }
-        }
-    }
-
-    fn ask(&self, world: &dyn World) -> Answer {
-        let stamp = self.stamp(world);
-        let key = match self {
-            Question::RealPath(path) => of_path(&world.real_path(path)),
-            Question::Read(path) => of_bytes(&world.read(path)),
-            Question::ReadStart(path, length) => of_bytes(&world.read_start(path, *length)),
-        };
-        Answer { key, stamp }
-    }
-
-    fn stamp(&self, world: &dyn World) -> Option<Stamp> {
-        match self {
-            Question::RealPath(_) => None,
-            Question::Read(path) | Question::ReadStart(path, _) => stamp(world, path),
-        }
-    }
-}
-
-/// The state of a file, unless it is so young that a later one could look the same.
-fn stamp(world: &dyn World, path: &Path) -> Option<Stamp> {
-    let stamp = world.stamp(path).ok()?;
-    stamp
-        .is_older_than(SystemTime::now().checked_sub(TICK)?)
-        .then_some(stamp)
-}
-
-fn of_bytes(read: &io::Result<Vec<u8>>) -> Key {
-    match read {
-        Ok(bytes) => KeyHasher::new("contents", 1).bytes(bytes).finish(),
-        Err(error) => of_error(error),
-    }
-}
-
-fn of_path(path: &io::Result<PathBuf>) -> Key {
-    match path {
-        Ok(path) => KeyHasher::new("place", 1)
-            .bytes(path.as_os_str().as_encoded_bytes())
-            .finish(),
-        Err(error) => of_error(error),
-    }
-}
-
-fn of_error(error: &io::Error) -> Key {
-    KeyHasher::new("error", 1).text(&error.to_string()).finish()
-}
+use std::sync::Arc;
+use std::time::Duration;
 
 /// A world that notes in a trace what is read through it.
 pub struct Traced {
     world: Arc<dyn World>,
-    trace: Trace,
-    on_new: OnNew,
+    notes: Notes,
 }
 
-/// Called for each path that was not asked about before.
-type OnNew = Box<dyn Fn(&Path) + Send + Sync>;
+/// Where answers are noted.
+#[derive(Clone)]
+struct Notes {
+    trace: Trace,
+    /// Called for each path that was not asked about before.
+    on_new: Arc<dyn Fn(&Path) + Send + Sync>,
+}
+
+impl Notes {
+    fn note(&self, question: Question, key: Key, stamp: Option<Stamp>) {
+        let (path, key) = (question.path().to_owned(), Some(key));
+        if self.trace.note(question, Answer { key, stamp }) {
+            (self.on_new)(&path);
+        }
+    }
+}
 
 impl Traced {
     /// Notes what is read from `world` in `trace`, and calls `on_new` after each new path.
@@ -183,10 +38,10 @@ impl Traced {
         trace: Trace,
         on_new: impl Fn(&Path) + Send + Sync + 'static,
     ) -> Traced {
+        let on_new = Arc::new(on_new);
         Traced {
             world,
-            trace,
-            on_new: Box::new(on_new),
+            notes: Notes { trace, on_new },
         }
     }
 
@@ -198,36 +53,96 @@ impl Traced {
     ) -> io::Result<T> {
         let stamp = question.stamp(&*self.world);
         let said = ask();
-        let answer = || Answer {
-            key: key(&said),
-            stamp,
-        };
-        let path = question.path().to_owned();
-        if self.trace.note(question, answer) {
-            (self.on_new)(&path);
-        }
+        self.notes.note(question, key(&said), stamp);
         said
+    }
+}
+
+/// A file that is hashed as it is read, and noted when that ends.
+struct TracedStream {
+    stream: Box<dyn Read>,
+    notes: Notes,
+    path: PathBuf,
+    stamp: Option<Stamp>,
+    hasher: KeyHasher,
+    /// Bytes that were read.
+    length: usize,
+    is_noted: bool,
+}
+
+impl TracedStream {
+    fn note(&mut self, question: Question, key: Key) {
+        if !self.is_noted {
+            self.is_noted = true;
+            self.notes.note(question, key, self.stamp.take());
+        }
+    }
+}
+
+impl Read for TracedStream {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.stream.read(buffer);
+        match &read {
+            Ok(0) if !buffer.is_empty() => {
+                self.note(Question::Read(self.path.clone()), self.hasher.finish());
+            }
+            Ok(length) => {
+                self.hasher.part(&buffer[..*length]);
+                self.length += length;
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => {
+                self.note(Question::Read(self.path.clone()), trace::of_error(error));
+            }
+        }
+        read
+    }
+}
+
+impl Drop for TracedStream {
+    fn drop(&mut self) {
+        // Whoever reads no further, or was cancelled, has seen the start and nothing else.
+        let question = Question::ReadStart(self.path.clone(), self.length);
+        self.note(question, self.hasher.finish());
     }
 }
 
 impl World for Traced {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let question = Question::Read(path.to_owned());
-        self.noted(question, || self.world.read(path), of_bytes)
+        self.noted(question, || self.world.read(path), trace::of_bytes)
     }
 
     fn open(&self, path: &Path) -> io::Result<Box<dyn Read>> {
-        Ok(Box::new(io::Cursor::new(self.read(path)?)))
+        let question = Question::Read(path.to_owned());
+        let stamp = question.stamp(&*self.world);
+        let opened = self.world.open(path).inspect_err(|error| {
+            let key = trace::of_error(error);
+            self.notes.note(question, key, stamp.clone());
+        });
+        Ok(Box::new(TracedStream {
+            stream: opened?,
+            notes: self.notes.clone(),
+            path: path.to_owned(),
+            stamp,
+            hasher: trace::contents(),
+            length: 0,
+            is_noted: false,
+        }))
     }
 
     fn real_path(&self, path: &Path) -> io::Result<PathBuf> {
         let question = Question::RealPath(path.to_owned());
-        self.noted(question, || self.world.real_path(path), of_path)
+        self.noted(question, || self.world.real_path(path), trace::of_path)
     }
 
     fn read_start(&self, path: &Path, length: usize) -> io::Result<Vec<u8>> {
         let question = Question::ReadStart(path.to_owned(), length);
-        self.noted(question, || self.world.read_start(path, length), of_bytes)
+        self.noted(
+            question,
+            || self.world.read_start(path, length),
+            trace::of_bytes,
+        )
     }
 
     fn create(&self, path: &Path) -> io::Result<Box<dyn PendingFile>> {
@@ -270,7 +185,7 @@ impl World for Traced {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{Memory, forwarded};
+    use crate::world::{Doubt, Memory, forwarded};
 
     #[test]
     fn whatever_is_asked_is_passed_on() {
@@ -294,14 +209,61 @@ mod tests {
     }
 
     #[test]
-    fn of_two_answers_in_one_run_the_first_counts() {
+    fn two_answers_in_one_run_are_a_change_even_if_the_first_comes_back() {
         let files = Memory::default();
-        files.insert("a", "one");
         let trace = Trace::new();
         let world = Traced::new(Arc::new(files.clone()), trace.clone(), |_| {});
+        for (text, is_changed) in [("one", false), ("one", false), ("two", true)] {
+            files.insert("a", text);
+            world.read(Path::new("a")).unwrap();
+            let changed = trace.changed(&files, Doubt::All);
+            assert_eq!(changed.is_some(), is_changed, "{text}");
+        }
+        files.insert("a", "one");
+        assert_eq!(trace.changed(&files, Doubt::All), Some("a".into()));
         world.read(Path::new("a")).unwrap();
-        files.insert("a", "two");
-        world.read(Path::new("a")).unwrap();
+        assert_eq!(trace.changed(&files, Doubt::All), Some("a".into()));
+    }
+
+    #[test]
+    fn a_stream_is_noted_as_far_as_it_was_read() {
+        let files = Memory::default();
+        files.insert("a", "abcdef");
+        let changed = |trace: &Trace, text: &str| {
+            files.insert("a", text);
+            let changed = trace.changed(&files, Doubt::All).is_some();
+            files.insert("a", "abcdef");
+            changed
+        };
+        let traced = |length: u64| {
+            let trace = Trace::new();
+            let world = Traced::new(Arc::new(files.clone()), trace.clone(), |_| {});
+            let mut stream = world.open(Path::new("a")).unwrap();
+            let mut text = String::new();
+            stream
+                .by_ref()
+                .take(length)
+                .read_to_string(&mut text)
+                .unwrap();
+            drop(stream);
+            // What a stream and what a whole reading say is the same.
+            assert_eq!(trace.changed(&files, Doubt::All), None);
+            trace
+        };
+        let (start, whole) = (traced(3), traced(9));
+        assert!(!changed(&start, "abcxyz") && !changed(&start, "abc"));
+        assert!(changed(&start, "abXdef") && changed(&start, "ab"));
+        assert!(changed(&whole, "abcxyz") && changed(&whole, "abcdefg"));
+    }
+
+    #[test]
+    fn a_stream_that_cannot_be_opened_is_noted() {
+        let files = Memory::default();
+        let trace = Trace::new();
+        let world = Traced::new(Arc::new(files.clone()), trace.clone(), |_| {});
+        assert!(world.open(Path::new("a")).is_err());
+        assert_eq!(trace.changed(&files, Doubt::All), None);
+        files.insert("a", "");
         assert_eq!(trace.changed(&files, Doubt::All), Some("a".into()));
     }
 }

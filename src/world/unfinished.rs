@@ -7,7 +7,7 @@ use super::PendingFile;
 use super::again::{Patience, uninterrupted};
 use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, BufWriter, Seek, Write};
+use std::io::{self, BufWriter, Read, Seek, Write};
 use std::mem;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -65,6 +65,13 @@ impl Unfinished {
         live.insert(mark.0.clone());
         let file = BufWriter::with_capacity(1 << 18, file);
         Ok(Unfinished { file, mark, path })
+    }
+}
+
+impl Read for Unfinished {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.file.flush()?;
+        self.file.get_mut().read(buffer)
     }
 }
 

@@ -61,6 +61,12 @@ impl Read for WatchedStream {
     }
 }
 
+impl Read for WatchedFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.file.read(buffer)
+    }
+}
+
 impl Write for WatchedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         (self.watcher)("write", &self.path);

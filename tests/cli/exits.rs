@@ -149,3 +149,32 @@ fn a_reader_that_closes_the_pipe_is_no_failure() {
         );
     }
 }
+
+#[test]
+fn recipes_that_would_share_a_folder_are_refused_before_anything_runs() {
+    let place = Place::new(BOARD);
+    for folder in ["p", "q"] {
+        fs::create_dir(place.path(folder)).unwrap();
+        place.write(&format!("{folder}/board.ron"), BOARD);
+    }
+    for command in ["render", "watch"] {
+        for recipes in [
+            ["p/board.ron", "recipe.ron", "q/board.ron"],
+            ["recipe.ron", "p/board.ron", "p/board.ron"],
+        ] {
+            let output = place.call(&[&[command], &recipes[..]].concat());
+            assert_eq!(code(&output), 2, "{command} {recipes:?}");
+            let shared = Path::new("out").join("board");
+            let said = format!(
+                "the maps of `p/board.ron` and of `{}` would both go to `{}`",
+                recipes[2],
+                shared.display()
+            );
+            assert!(stderr(&output).contains(&said), "{}", stderr(&output));
+            assert!(stdout(&output).is_empty() && place.names("out").is_empty());
+        }
+    }
+    let apart = ["render", "p/board.ron", "recipe.ron", "--no-cache"];
+    assert_eq!(code(&place.call(&apart)), 0);
+    assert_eq!(place.names("out"), ["board", "recipe"]);
+}

@@ -1,7 +1,7 @@
 //! Disks that fail from some operation on; `tests/faults` has those that fail once.
 
 use super::*;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use yosegi::world::{Memory, PendingFile};
@@ -52,6 +52,12 @@ impl World for Failing {
             file: self.files.create(path)?,
             world: self.clone(),
         }))
+    }
+}
+
+impl Read for FailingFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.file.read(buffer)
     }
 }
 

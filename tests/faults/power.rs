@@ -63,6 +63,12 @@ impl World for Forgetful {
     }
 }
 
+impl Read for ForgetfulFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.file.read(buffer)
+    }
+}
+
 impl Write for ForgetfulFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.is_synced = false;

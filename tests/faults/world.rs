@@ -149,6 +149,12 @@ struct FaultyFile {
     world: Faulty,
 }
 
+impl Read for FaultyFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.file.read(buffer)
+    }
+}
+
 impl Write for FaultyFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.world.step(Act::Write, &self.path)?;

@@ -1,6 +1,6 @@
 //! Disks that fail, and disks that only count.
 
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -37,6 +37,12 @@ impl World for Failing {
             file: self.files.create(path)?,
             left: self.left.clone(),
         }))
+    }
+}
+
+impl Read for FailingFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.file.read(buffer)
     }
 }
 
@@ -90,6 +96,12 @@ impl World for Counting {
 
     fn create(&self, _: &Path) -> io::Result<Box<dyn PendingFile>> {
         Ok(Box::new(self.clone()))
+    }
+}
+
+impl Read for Counting {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        io::empty().read(buffer)
     }
 }
 

@@ -2,14 +2,14 @@
 
 use super::*;
 use std::fs::{self, File};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::SystemTime;
 use yosegi::engine::RunError;
 use yosegi::graph::{Settings, load_text_with};
-use yosegi::node::{Failure, Input, Kind, Output};
+use yosegi::node::{Build, Failure, Input, Inputs, Kind, Output};
 use yosegi::nodes::KINDS;
-use yosegi::value::{Type, Unit};
+use yosegi::value::{AfterEnd, ColourPattern, Type, Unit, Value};
 use yosegi::world::Disk;
 
 /// Whether a run after that of the board finds everything in place.
@@ -144,6 +144,59 @@ fn a_failure_is_never_stored() {
         // The skeleton alone: neither the failure, nor what reads it, nor a record of the run.
         assert_eq!(entries(&workshop), entries_of(&workshop, "structure"));
         assert_eq!(entries(&workshop).len(), 1);
+    }
+}
+
+/// Cancels the run in which `half` is built next.
+static SWITCH: Mutex<Option<Cancel>> = Mutex::new(None);
+
+/// Gives what it has if the run is cancelled meanwhile, which kinds should not do.
+static HALF: Kind = Kind {
+    name: "half",
+    build: build_half,
+    ..FAILS
+};
+
+fn build_half(_: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    if let Some(switch) = SWITCH.lock().unwrap().take() {
+        switch.cancel();
+    }
+    let steps = (0..10).take_while(|_| build.go_on().is_ok()).count();
+    let pattern = ColourPattern {
+        colours: vec![[steps as f32 * 0.05; 3]; 2],
+        years: 1.0,
+        ring_starts: vec![0.0],
+        after_end: AfterEnd::Repeat,
+        smooth: true,
+    };
+    Ok(vec![Value::ColourPattern(Arc::new(pattern))])
+}
+
+#[test]
+fn what_a_cancelled_build_gives_is_remembered_neither_in_memory_nor_in_the_store() {
+    let kinds: Vec<&'static Kind> = KINDS.iter().copied().chain([&HALF]).collect();
+    let recipe = edit(
+        r##"colour_pattern(stops: [(at: 0, colour: "#e8c99b"), (at: 1, colour: "#9a6438")])"##,
+        "half()",
+    );
+    let graph = load_text_with(&kinds, "own.ron", &recipe, &Settings::default());
+    let graph = graph.unwrap_or_else(|wrong| panic!("{wrong:?}")).graph;
+    let render =
+        |workshop: &Workshop, cancel: Cancel| workshop.render_graph(&graph, &[], cancel, &|_| {});
+    let undisturbed = workshop(options());
+    assert!(render(&undisturbed, Cancel::new()).result.is_ok());
+    for has_memory in [true, false] {
+        let workshop = workshop(options());
+        let cancel = Cancel::new();
+        *SWITCH.lock().unwrap() = Some(cancel.clone());
+        assert_eq!(render(&workshop, cancel).result, Err(RunError::Cancelled));
+        let next = match has_memory {
+            true => workshop,
+            false => workshop.another(options()),
+        };
+        let log = render(&next, Cancel::new()).log();
+        assert!(log.contains("built year"), "{log}");
+        assert!(MAPS.map(|name| next.map(name)) == MAPS.map(|name| undisturbed.map(name)));
     }
 }
 

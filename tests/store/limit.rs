@@ -321,22 +321,6 @@ fn entries_that_another_process_evicts_are_misses() {
 }
 
 #[test]
-fn files_half_written_go_only_when_they_are_abandoned() {
-    let workshop = workshop(limited(8 * BLOCK));
-    let [live, left, ahead] =
-        ["a", "b", "c"].map(|it| PathBuf::from(format!("store/map/ab/.yosegi-{it}.part")));
-    let now = SystemTime::now();
-    for (path, time) in [(&live, now), (&left, now - DAY), (&ahead, now + 400 * DAY)] {
-        workshop.files.insert(path, vec![0; 9 * BLOCK as usize]);
-        used(&workshop, path, time);
-    }
-    workshop.run(BOARD);
-    let left_over = entries(&workshop);
-    assert!(left_over.contains(&live));
-    assert!(!left_over.contains(&left) && !left_over.contains(&ahead));
-}
-
-#[test]
 fn the_age_of_the_oldest_entry_is_told() {
     let workshop = workshop(options());
     let oldest = || {

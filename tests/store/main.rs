@@ -3,6 +3,7 @@
 
 mod campaign;
 mod damage;
+mod foreign;
 mod keys;
 mod limit;
 mod malice;

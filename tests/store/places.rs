@@ -2,7 +2,7 @@
 
 use super::*;
 use std::fs;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tempfile::TempDir;
@@ -109,6 +109,12 @@ struct FaultyFile {
     bytes: Vec<u8>,
     path: PathBuf,
     world: Faulty,
+}
+
+impl Read for FaultyFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.file.read(buffer)
+    }
 }
 
 impl Write for FaultyFile {
@@ -383,6 +389,30 @@ fn count(folder: &Path) -> usize {
         }
     };
     entries.map(inside).sum()
+}
+
+#[test]
+fn cleaning_removes_no_folder_from_which_it_removed_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    // Named as a store names them, and of someone else.
+    let empty = ["map/ab", "plan", "unfinished"].map(|name| folder.path().join(name));
+    for place in &empty {
+        fs::create_dir_all(place).unwrap();
+    }
+    clean_store(&Disk, folder.path()).unwrap();
+    assert!(empty.iter().all(|place| place.is_dir()));
+
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().join("store");
+    let workshop = on_disk(&folder, Path::new("store"));
+    render(&workshop);
+    clean_store(&Disk, &store).unwrap();
+    assert!(!store.exists());
+    render(&workshop);
+    fs::create_dir(store.join("mine")).unwrap();
+    clean_store(&Disk, &store).unwrap();
+    let left = fs::read_dir(&store).unwrap().map(|it| it.unwrap().path());
+    assert_eq!(left.collect::<Vec<_>>(), [store.join("mine")]);
 }
 
 #[test]

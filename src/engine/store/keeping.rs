@@ -4,12 +4,10 @@ use super::family::Family;
 use super::{UNFINISHED, entry};
 use crate::world::{Listed, World};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
-
-/// A file half-written is left by a program that was killed if nothing was written to it for so long.
-const ABANDONED: Duration = Duration::from_secs(3600);
 
 /// The entries of one family in a store.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -25,7 +23,7 @@ pub struct StoreFamily {
     pub oldest_seconds: Option<u64>,
 }
 
-/// A file in the store with the name of an entry, or of one that was never finished.
+/// A file in the store with the name of an entry.
 pub(super) struct Kept {
     pub(super) path: PathBuf,
     pub(super) bytes: u64,
@@ -45,9 +43,9 @@ pub fn store_status(world: &dyn World, folder: &Path) -> io::Result<Vec<StoreFam
     Family::ALL.into_iter().map(status).collect()
 }
 
-/// Removes every entry of the store in `folder`, and the folders that are empty then; says what was
-/// removed. Whatever is not named and begun as an entry stays. Runs that use the store meanwhile miss what
-/// is gone and are not harmed.
+/// Removes every entry of the store in `folder`, and the folders that are empty by that; says what was
+/// removed. Whatever is not named and begun as an entry stays, and so does every folder in which there was
+/// none. Runs that use the store meanwhile miss what is gone and are not harmed.
 ///
 /// # Errors
 /// The first error of the operating system; what could be removed is removed.
@@ -64,15 +62,18 @@ pub fn clean_store(world: &dyn World, folder: &Path) -> io::Result<Vec<StoreFami
             result = result.and(error);
         }
         let gone: Vec<Kept> = gone.into_iter().map(|(_, entry)| entry).collect();
+        remove_left(world, &place, &gone);
         removed.push(family_of(family, &gone));
-        remove_empty(world, &place);
     }
+    let is_store = removed.iter().any(|family| family.entries > 0);
     let unfinished = folder.join(UNFINISHED);
     if !world.is_link(&unfinished) {
         world.sweep(&unfinished);
-        let _ = world.remove(&unfinished);
+        if is_store {
+            let _ = world.remove(&unfinished);
+        }
     }
-    if !world.is_link(folder) {
+    if is_store && !world.is_link(folder) {
         // Holds other things, or is in use: then it stays.
         let _ = world.remove(folder);
     }
@@ -116,7 +117,7 @@ pub(super) fn remove(world: &dyn World, path: &Path) -> io::Result<()> {
 impl Kept {
     /// `None` if it is something else by its name, or no plain file.
     fn new(listed: Listed) -> Option<Kept> {
-        let named = is_half(&listed.path) || has_digits(&listed.path, 62);
+        let named = has_digits(&listed.path, 62);
         let bytes = listed.bytes.filter(|_| named && !listed.is_link)?;
         Some(Kept {
             path: listed.path,
@@ -131,11 +132,8 @@ impl Kept {
         ahead.is_some_and(|ahead| ahead > by)
     }
 
-    /// Whether it may be evicted: it is ours, and nobody is writing it.
-    pub(super) fn may_go(&self, world: &dyn World, now: SystemTime) -> bool {
-        if is_half(&self.path) {
-            return self.is_ahead(now, ABANDONED) || self.age(now) > ABANDONED;
-        }
+    /// Whether it may be removed: it is begun as an entry.
+    pub(super) fn is_ours(&self, world: &dyn World) -> bool {
         entry::is_ours(world, &self.path)
     }
 
@@ -159,13 +157,12 @@ fn family_of(family: Family, entries: &[Kept]) -> StoreFamily {
     }
 }
 
-/// The files of a family: entries, and what programs that were killed have left half-written.
+/// The entries of a family.
 fn entries(world: &dyn World, family: &Path) -> io::Result<Vec<Kept>> {
     let mut entries = vec![];
     for folder in numbered(world, family)? {
         let files = list(world, &folder)?.into_iter().filter_map(Kept::new);
-        let is_ours = |file: &Kept| is_half(&file.path) || entry::is_ours(world, &file.path);
-        entries.extend(files.filter(is_ours));
+        entries.extend(files.filter(|file| file.is_ours(world)));
     }
     Ok(entries)
 }
@@ -189,11 +186,6 @@ fn list(world: &dyn World, folder: &Path) -> io::Result<Vec<Listed>> {
     }
 }
 
-fn is_half(path: &Path) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str());
-    name.is_some_and(|name| name.starts_with(".yosegi-") && name.ends_with(".part"))
-}
-
 /// Whether the name of a path is `count` hexadecimal digits.
 fn has_digits(path: &Path, count: usize) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
@@ -201,13 +193,17 @@ fn has_digits(path: &Path, count: usize) -> bool {
     name.is_some_and(|name| name.len() == count && name.bytes().all(is_digit))
 }
 
-/// Removes the folders of a family that are empty.
-fn remove_empty(world: &dyn World, family: &Path) {
-    for folder in numbered(world, family).unwrap_or_default() {
+/// Removes the folders of a family from which all entries are gone.
+fn remove_left(world: &dyn World, family: &Path, gone: &[Kept]) {
+    let folders: BTreeSet<&Path> = gone
+        .iter()
+        .filter_map(|entry| entry.path.parent())
+        .collect();
+    for folder in &folders {
         // A folder that is not empty is refused by the system, and stays.
-        let _ = world.remove(&folder);
+        let _ = world.remove(folder);
     }
-    if !world.is_link(family) {
+    if !folders.is_empty() {
         let _ = world.remove(family);
     }
 }

@@ -143,7 +143,7 @@ impl Store {
                 if total <= limit.target() {
                     break;
                 }
-                match self.evict(world, &entry, now) {
+                match self.evict(world, &entry) {
                     Ok(true) => total = total.saturating_sub(on_disk(entry.bytes)),
                     Ok(false) => {}
                     Err(error) => result = result.and(Err(error)),
@@ -156,8 +156,8 @@ impl Store {
     }
 
     /// Removes an entry; false if it has to stay.
-    fn evict(&self, world: &dyn World, entry: &Kept, now: SystemTime) -> io::Result<bool> {
-        if self.limit.is_used(&entry.path) || !entry.may_go(world, now) {
+    fn evict(&self, world: &dyn World, entry: &Kept) -> io::Result<bool> {
+        if self.limit.is_used(&entry.path) || !entry.is_ours(world) {
             return Ok(false);
         }
         keeping::remove(world, &entry.path).map(|()| true)

@@ -24,7 +24,8 @@ impl Store {
         postcard::from_bytes(&self.get(Family::Map, key)?).ok()
     }
 
-    /// Remembers a map that was just written to `path`, unless another run has put its own there.
+    /// Remembers a map that was written to `path`; its file is known by hash and size. If something else lies
+    /// there by now, it is that of another run or another program, and nothing is remembered.
     ///
     /// # Errors
     /// Whatever the operating system says.
@@ -32,26 +33,21 @@ impl Store {
         &self,
         key: &Key,
         path: &Path,
-        faults: [u64; 2],
+        record: &MapRecord,
     ) -> io::Result<()> {
-        // Another run may have replaced the file since: what is hashed, checked and copied is one reading.
+        // What is hashed and copied is one reading.
         let mut stream = self.world.open(path)?;
         let mut copy = vec![];
         let largest = Family::File.most_bytes();
         stream.by_ref().take(largest + 1).read_to_end(&mut copy)?;
-        if output::key_in(&copy).is_some_and(|found| found != *key) {
+        let found = Key::of_stream(&mut copy.as_slice().chain(stream))?;
+        if found != (record.file, record.bytes) {
             return Ok(());
         }
-        let (file, bytes) = Key::of_stream(&mut copy.as_slice().chain(stream))?;
-        let record = MapRecord {
-            faults,
-            file,
-            bytes,
-        };
         if record.bytes <= largest {
             self.put(Family::File, &record.file, &copy)?;
         }
-        let bytes = postcard::to_stdvec(&record).map_err(io::Error::other)?;
+        let bytes = postcard::to_stdvec(record).map_err(io::Error::other)?;
         self.put(Family::Map, key, &bytes)
     }
 

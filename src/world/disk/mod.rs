@@ -12,6 +12,9 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
+/// Most symbolic links on the way to a file: as many as Linux follows.
+const LINKS: usize = 40;
+
 /// The disk.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disk;
@@ -154,10 +157,8 @@ fn folder_of(path: &Path) -> &Path {
 
 /// Where a file named `path` really lies: a rename would replace the link instead of its target.
 fn behind_links(path: &Path) -> io::Result<PathBuf> {
-    // As many as Linux follows.
-    const LIMIT: usize = 40;
     let mut path = path.to_owned();
-    for _ in 0..LIMIT {
+    for _ in 0..LINKS {
         if !path.is_symlink() {
             return Ok(path);
         }
@@ -172,6 +173,7 @@ fn behind_links(path: &Path) -> io::Result<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Seek;
 
     fn write(path: &Path, bytes: &[u8]) {
         let mut file = Disk.create(path).unwrap();
@@ -193,6 +195,8 @@ mod tests {
         let path = folder.path().join("new/map.png");
         let mut file = Disk.create(&path).unwrap();
         file.write_all(b"half").unwrap();
+        file.rewind().unwrap();
+        assert_eq!(io::read_to_string(&mut file).unwrap(), "half");
         assert!(!path.exists());
         drop(file);
         assert_eq!(names(&folder.path().join("new")), [""; 0]);

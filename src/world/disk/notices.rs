@@ -4,6 +4,7 @@
 //! A path is followed from the root on through every link, and each folder on the way is listened to for the
 //! one name that matters, so that a folder that is renamed and brought back is noticed as well.
 
+use super::LINKS;
 use crate::world::{Heard, Notices, NoticesError, Wake};
 use notify::event::{AccessKind, AccessMode};
 use notify::{Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher};
@@ -13,9 +14,6 @@ use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// As many links as Linux follows.
-const LINKS: usize = 40;
 
 /// Listens to folders.
 pub(super) struct DiskNotices {
