@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Longest side of the first picture, in pixels.
-const COARSEST: u32 = 64;
+const COARSEST: u32 = 32;
 
 /// Longest side of the last one.
 const FINEST: u32 = 512;
