@@ -45,6 +45,20 @@ impl Default for Setup {
     }
 }
 
+impl Setup {
+    /// With small pictures.
+    pub(crate) fn with_preview() -> Setup {
+        let options = Options {
+            preview: true,
+            poll: None,
+        };
+        Setup {
+            options,
+            ..Setup::default()
+        }
+    }
+}
+
 impl Desk {
     /// A desk whose recipe lies where it should and has the colour 1.
     pub(crate) fn new() -> Desk {

@@ -69,11 +69,7 @@ fn no_more_than_one_run_is_left_behind() {
 fn after_an_undo_the_small_picture_is_that_of_the_old_state_again() {
     let setup = Setup {
         store: true,
-        options: Options {
-            preview: true,
-            poll: None,
-        },
-        ..Setup::default()
+        ..Setup::with_preview()
     };
     let desk = Desk::with(setup, |folder| {
         fs::write(folder.join("recipe.ron"), recipe(1)).unwrap();
@@ -89,14 +85,7 @@ fn after_an_undo_the_small_picture_is_that_of_the_old_state_again() {
 
 #[test]
 fn a_small_picture_that_cannot_be_written_keeps_no_map_from_being_written() {
-    let setup = Setup {
-        options: Options {
-            preview: true,
-            poll: None,
-        },
-        ..Setup::default()
-    };
-    let desk = Desk::with(setup, |folder| {
+    let desk = Desk::with(Setup::with_preview(), |folder| {
         fs::create_dir_all(folder.join("out/tile.preview.png")).unwrap();
         fs::write(folder.join("recipe.ron"), recipe(3)).unwrap();
     });
