@@ -3,7 +3,7 @@
 use super::memory::Structure;
 use crate::key::{Key, KeyHasher};
 use crate::node::Kind;
-use crate::value::{ColourPattern, Material, Skeleton, Type, Value};
+use crate::value::{Climate, ColourPattern, Material, Mesh, RingSeries, Skeleton, Type, Value};
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -12,7 +12,11 @@ pub(super) fn key(value: &Value) -> Key {
     let mut key = KeyHasher::new("content", 1);
     match value {
         Value::Field(field) => return field.key(),
-        Value::Skeleton(_) | Value::ColourPattern(_) => {
+        Value::Skeleton(_)
+        | Value::ColourPattern(_)
+        | Value::Climate(_)
+        | Value::RingSeries(_)
+        | Value::Mesh(_) => {
             key.text(value.type_name()).bytes(&structure_bytes(value));
         }
         Value::Material(material) => add_material(&mut key, material),
@@ -52,6 +56,9 @@ fn structure_bytes(value: &Value) -> Vec<u8> {
     let bytes = match value {
         Value::Skeleton(skeleton) => postcard::to_stdvec(&**skeleton),
         Value::ColourPattern(pattern) => postcard::to_stdvec(&**pattern),
+        Value::Climate(climate) => postcard::to_stdvec(&**climate),
+        Value::RingSeries(series) => postcard::to_stdvec(&**series),
+        Value::Mesh(mesh) => postcard::to_stdvec(&**mesh),
         _ => Ok(vec![]),
     };
     bytes.expect("plain data always has bytes")
@@ -95,18 +102,19 @@ fn take<'b, T: Deserialize<'b>>(bytes: &mut &'b [u8]) -> Option<T> {
 
 fn decode_value(value_type: Type, bytes: &[u8]) -> Option<Value> {
     match value_type {
-        Type::Skeleton => {
-            let skeleton = postcard::from_bytes(bytes).ok();
-            let skeleton = skeleton.filter(Skeleton::is_sound)?;
-            Some(Value::Skeleton(Arc::new(skeleton)))
-        }
-        Type::ColourPattern => {
-            let pattern = postcard::from_bytes(bytes).ok();
-            let pattern = pattern.filter(ColourPattern::is_sound)?;
-            Some(Value::ColourPattern(Arc::new(pattern)))
-        }
+        Type::Skeleton => sound(bytes, Skeleton::is_sound).map(Value::Skeleton),
+        Type::ColourPattern => sound(bytes, ColourPattern::is_sound).map(Value::ColourPattern),
+        Type::Climate => sound(bytes, Climate::is_sound).map(Value::Climate),
+        Type::RingSeries => sound(bytes, RingSeries::is_sound).map(Value::RingSeries),
+        Type::Mesh => sound(bytes, Mesh::is_sound).map(Value::Mesh),
         _ => None,
     }
+}
+
+/// What the bytes hold, if it is what nodes make.
+fn sound<'b, T: Deserialize<'b>>(bytes: &'b [u8], is_sound: fn(&T) -> bool) -> Option<Arc<T>> {
+    let value = postcard::from_bytes(bytes).ok();
+    value.filter(is_sound).map(Arc::new)
 }
 
 /// Whether a stored text can be shown: it has no characters that a terminal takes for commands.

@@ -86,9 +86,14 @@ impl<'c> Reader<'c> {
             Type::List(item) => self.list(tree, slot, *item).map(Value::List),
             Type::Record(parts) => self.record(tree, slot, parts).map(Value::Record),
             Type::Names => self.names(tree, slot).map(Value::Names),
-            Type::Channels | Type::Skeleton | Type::ColourPattern | Type::Material | Type::Maps => {
-                self.mismatch(tree, slot)
-            }
+            Type::Channels
+            | Type::Skeleton
+            | Type::ColourPattern
+            | Type::Climate
+            | Type::RingSeries
+            | Type::Mesh
+            | Type::Material
+            | Type::Maps => self.mismatch(tree, slot),
         }
     }
 

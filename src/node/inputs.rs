@@ -4,7 +4,9 @@ use super::Kind;
 use super::ledger::{Budget, Ledger};
 use crate::cancel::Cancel;
 use crate::field::{Field, Kernel};
-use crate::value::{ColourPattern, Domain, FileContents, Material, Skeleton, Value};
+use crate::value::{
+    Climate, ColourPattern, Domain, FileContents, Material, Mesh, RingSeries, Skeleton, Value,
+};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -187,6 +189,12 @@ impl<'a> Inputs<'a> {
         skeleton, Value::Skeleton(skeleton) => skeleton, &'a Arc<Skeleton>;
         /// A colour pattern.
         colour_pattern, Value::ColourPattern(pattern) => pattern, &'a Arc<ColourPattern>;
+        /// A climate.
+        climate, Value::Climate(climate) => climate, &'a Arc<Climate>;
+        /// A ring series.
+        ring_series, Value::RingSeries(series) => series, &'a Arc<RingSeries>;
+        /// A mesh.
+        mesh, Value::Mesh(mesh) => mesh, &'a Arc<Mesh>;
         /// A material.
         material, Value::Material(material) => material, &'a Arc<Material>;
     }

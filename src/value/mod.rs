@@ -1,12 +1,18 @@
 //! What flows on links: literals, structures, fields, materials and requests for maps.
 
+mod climate;
 mod colour_pattern;
 mod material;
+mod mesh;
+mod ring_series;
 mod skeleton;
 mod types;
 
+pub use climate::{Climate, Month};
 pub use colour_pattern::{AfterEnd, ColourPattern};
 pub use material::{FileType, MapFormat, Maps, Material, SampleType};
+pub use mesh::{Mesh, Triangle};
+pub use ring_series::RingSeries;
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
 pub use types::{Domain, Type, Unit};
 
@@ -69,6 +75,12 @@ pub enum Value {
     Skeleton(Arc<Skeleton>),
     /// Colour as a function of growth time.
     ColourPattern(Arc<ColourPattern>),
+    /// Weather, month by month.
+    Climate(Arc<Climate>),
+    /// How a tree grew, year by year.
+    RingSeries(Arc<RingSeries>),
+    /// Triangles in space.
+    Mesh(Arc<Mesh>),
     /// A bundle of fields.
     Material(Arc<Material>),
     /// Maps to be written.
@@ -119,9 +131,13 @@ impl Value {
                 key
             }
             Value::Field(field) => key.text("field").key(field.key()),
-            Value::Skeleton(_) | Value::ColourPattern(_) | Value::Material(_) | Value::Maps(_) => {
-                key
-            }
+            Value::Skeleton(_)
+            | Value::ColourPattern(_)
+            | Value::Climate(_)
+            | Value::RingSeries(_)
+            | Value::Mesh(_)
+            | Value::Material(_)
+            | Value::Maps(_) => key,
         };
     }
 
@@ -144,6 +160,9 @@ impl Value {
             Value::Field(_) => "field",
             Value::Skeleton(_) => "skeleton",
             Value::ColourPattern(_) => "colour pattern",
+            Value::Climate(_) => "climate",
+            Value::RingSeries(_) => "ring series",
+            Value::Mesh(_) => "mesh",
             Value::Material(_) => "material",
             Value::Maps(_) => "maps",
         }

@@ -86,6 +86,12 @@ pub enum Type {
     Skeleton,
     /// Colour as a function of growth time.
     ColourPattern,
+    /// Weather, month by month.
+    Climate,
+    /// How a tree grew, year by year.
+    RingSeries,
+    /// Triangles in space.
+    Mesh,
     /// A bundle of fields.
     Material,
     /// Maps to be written: what an output of a recipe is.
@@ -95,15 +101,15 @@ pub enum Type {
 impl Type {
     /// Whether a recipe can write a value of this type as a literal.
     pub fn has_literals(self) -> bool {
-        !matches!(
-            self,
-            Type::Skeleton | Type::ColourPattern | Type::Material | Type::Maps
-        )
+        !self.is_structure() && !matches!(self, Type::Material | Type::Maps)
     }
 
     /// Whether values of this type are built once and cached, as opposed to wired or computed per point.
     pub fn is_structure(self) -> bool {
-        matches!(self, Type::Skeleton | Type::ColourPattern)
+        matches!(
+            self,
+            Type::Skeleton | Type::ColourPattern | Type::Climate | Type::RingSeries | Type::Mesh
+        )
     }
 }
 
@@ -131,6 +137,9 @@ impl fmt::Display for Type {
             Type::Channels => write!(formatter, "map from names to values"),
             Type::Skeleton => write!(formatter, "skeleton"),
             Type::ColourPattern => write!(formatter, "colour pattern"),
+            Type::Climate => write!(formatter, "climate"),
+            Type::RingSeries => write!(formatter, "ring series"),
+            Type::Mesh => write!(formatter, "mesh"),
             Type::Material => write!(formatter, "material"),
             Type::Maps => write!(formatter, "maps"),
         }

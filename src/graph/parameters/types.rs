@@ -11,7 +11,7 @@ use crate::node::interned;
 use crate::value::{Type, Unit, Value};
 
 /// The types of both, then those that only inputs of compounds have.
-const TYPES: [&str; 12] = [
+const TYPES: [&str; 15] = [
     "number",
     "whole",
     "toggle",
@@ -23,6 +23,9 @@ const TYPES: [&str; 12] = [
     "file",
     "material",
     "skeleton",
+    "climate",
+    "ring_series",
+    "mesh",
     "colour_pattern",
 ];
 
@@ -57,6 +60,9 @@ pub(super) fn read(
         "file" => Type::File,
         "material" => Type::Material,
         "skeleton" => Type::Skeleton,
+        "climate" => Type::Climate,
+        "ring_series" => Type::RingSeries,
+        "mesh" => Type::Mesh,
         _ => Type::ColourPattern,
     })
 }
