@@ -141,6 +141,32 @@ impl Value {
         };
     }
 
+    /// The part of a record called `name`, if it is there.
+    pub fn part(&self, name: &str) -> Option<&Value> {
+        let Value::Record(parts) = self else {
+            return None;
+        };
+        let found = parts.iter().find(|(part, _)| *part == name);
+        found.map(|(_, value)| value)
+    }
+
+    /// The number, if it is a number or a whole number.
+    pub fn as_number(&self) -> Option<f64> {
+        match self {
+            Value::Number(number) => Some(*number),
+            Value::Whole(number) => Some(*number as f64),
+            _ => None,
+        }
+    }
+
+    /// The vector, if it is one.
+    pub fn as_vector(&self) -> Option<DVec3> {
+        match self {
+            Value::Vector(vector) => Some(*vector),
+            _ => None,
+        }
+    }
+
     /// The name of the value's type in messages.
     pub fn type_name(&self) -> &'static str {
         match self {

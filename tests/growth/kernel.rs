@@ -94,6 +94,7 @@ prop_compose! {
             height: low + at * (high - low),
             direction: DVec3::from(*direction).normalize_or(DVec3::X),
             thickness: Thickness::Speed(*speed),
+            length: None,
         }).collect();
         let tangents = if local { Tangents::Local } else { Tangents::Natural };
         Skeleton { trunk, tangents, branches }
@@ -248,6 +249,7 @@ fn bushy(count: usize) -> Skeleton {
             height: 100.0 + 2200.0 * share,
             direction: DVec3::new(libm::cos(azimuth), libm::sin(azimuth), 0.4).normalize(),
             thickness: Thickness::Speed(0.3 + 0.2 * share),
+            length: None,
         }
     };
     Skeleton {

@@ -116,6 +116,7 @@ fn tree() -> Skeleton {
         height,
         direction: DVec3::from(direction).normalize(),
         thickness: Thickness::Speed(speed),
+        length: None,
     };
     Skeleton {
         trunk: nodes.map(DVec3::from).to_vec(),

@@ -10,6 +10,7 @@ mod near;
 mod power;
 mod trunk;
 
+pub(super) use heights::Heights;
 pub use kernel::GrowthKernel;
 pub use model::{
     BranchTerms, GrowingBranch, GrowthModel, GrowthSettings, Reach, Terms, growth_time,
