@@ -15,6 +15,7 @@ pub static KINDS: &[&Kind] = &[
     &wood::skeleton::KIND,
     &wood::skeleton_from_file::KIND,
     &wood::growth_field::KIND,
+    &wood::straight_growth_field::KIND,
     &wood::rings::KIND,
     &wood::virtual_energy::KIND,
     &surface::material::KIND,

@@ -10,5 +10,6 @@ pub mod rings;
 pub mod sample_pattern;
 pub mod skeleton;
 pub mod skeleton_from_file;
+pub mod straight_growth_field;
 mod tree_file;
 pub mod virtual_energy;
