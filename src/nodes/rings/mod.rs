@@ -1,0 +1,4 @@
+//! From weather to tree rings.
+
+pub mod growth_model;
+pub mod weather;
