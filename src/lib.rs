@@ -22,7 +22,6 @@ mod lanes;
 pub mod node;
 pub mod nodes;
 pub mod output;
-mod random;
 pub mod value;
 pub mod watch;
 pub mod world;

@@ -1,10 +1,13 @@
 //! The kinds of nodes, in families: one file each, and one line each in the table below.
 
+mod cells;
 pub mod cut;
 pub mod field;
 pub mod noise;
 pub mod output;
 mod picture;
+mod random;
+pub mod rings;
 pub mod surface;
 pub mod wood;
 
@@ -16,7 +19,7 @@ pub static KINDS: &[&Kind] = &[
     &wood::skeleton_from_file::KIND,
     &wood::growth_field::KIND,
     &wood::straight_growth_field::KIND,
-    &wood::rings::KIND,
+    &rings::ring_series::KIND,
     &wood::virtual_energy::KIND,
     &surface::material::KIND,
     &cut::slice_cut::KIND,
@@ -41,6 +44,8 @@ pub static KINDS: &[&Kind] = &[
     &field::transform_field::KIND,
     &field::image_from_file::KIND,
     &surface::blend::KIND,
+    &rings::weather::KIND,
+    &rings::growth_model::KIND,
 ];
 
 /// The kind called `name`.

@@ -23,7 +23,7 @@ fn sample(nodes: &str, output: &str, points: &[[f64; 3]]) -> Result<Vec<f32>, St
 
 const TREE: &str = r#"
     "tree": skeleton(trunk: [(0, 0, 0), (0, 0, 2000)]),
-    "rings": rings(widths: [4, 3, 2, 1], height: 4000),
+    "rings": ring_series(widths: [4, 3, 2, 1], height: 4000),
 "#;
 
 #[test]
@@ -65,7 +65,7 @@ fn a_branch_has_its_border_where_it_was_said_to_be() {
     let nodes = r#"
         "tree": skeleton(trunk: [(0, 0, 0), (0, 0, 2000)], branches: [
             (at: 500, direction: (1, 0, 0), half_width: 12, at_distance: 150, length: 400)]),
-        "rings": rings(years: 40, radius: 100),
+        "rings": ring_series(years: 40, radius: 100),
         "energy": virtual_energy(skeleton: "tree", rings: "rings"),
     "#;
     let points = [
@@ -127,10 +127,10 @@ fn mistakes_are_told() {
             "the smaller number first",
         ),
         (
-            r#"rings(years: 3)"#,
+            r#"ring_series(years: 3)"#,
             "either `widths`, or `years` with `radius`",
         ),
-        (r#"rings(widths: [])"#, "at least one ring"),
+        (r#"ring_series(widths: [])"#, "at least one ring"),
     ];
     for (node, expected) in cases {
         let nodes = format!(

@@ -5,7 +5,7 @@ use super::octaves::{NoiseKernel, Octave};
 use super::period;
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Output};
-use crate::random::Random;
+use crate::nodes::random::Random;
 use crate::value::{Domain, Type, Unit, Value};
 
 /// Where the maths of the noise kinds comes from.

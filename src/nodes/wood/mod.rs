@@ -6,7 +6,6 @@ pub mod growth;
 pub mod growth_field;
 pub mod pattern_lookup;
 mod ring_time;
-pub mod rings;
 pub mod sample_pattern;
 pub mod skeleton;
 pub mod skeleton_from_file;

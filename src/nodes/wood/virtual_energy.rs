@@ -34,7 +34,7 @@ use super::energy::{
 use super::ring_time::{Inside, RingTime};
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
-use crate::random::Random;
+use crate::nodes::random::Random;
 use crate::value::{Domain, RingSeries, Type, Unit, Value};
 
 /// Growth time by virtual energy.
@@ -108,7 +108,7 @@ pub static KIND: Kind = Kind {
             trunk: [(0, 0, 0), (12, 4, 900), (-6, 9, 2100)],
             branches: [(at: 1200, direction: (1, 0.2, 0.5), half_width: 14, at_distance: 150, length: 400)],
         ),
-        \"rings\": rings(widths: [3, 3.4, 3, 2.6, 2.8, 2.2, 2.4, 2, 2.3, 1.9, 2, 1.8], height: 9000),
+        \"rings\": ring_series(widths: [3, 3.4, 3, 2.6, 2.8, 2.2, 2.4, 2, 2.3, 1.9, 2, 1.8], height: 9000),
         \"example\": virtual_energy(
             skeleton: \"tree\", rings: \"rings\", random_burls: 5,
             waves: [(amplitude: 0.8, length: 30, turns: 3)],

@@ -1,7 +1,7 @@
 //! How large charges are: of branches by their thickness, of burls by how far they swell, or drawn at random.
 
 use super::{Axis, Burl, Rod};
-use crate::random::Random;
+use crate::nodes::random::Random;
 use crate::value::{Branch, RingSeries, Thickness};
 use glam::DVec3;
 use std::f64::consts::{LN_2, PI};

@@ -1,18 +1,21 @@
-//! `rings`: how a tree grew, written down in the recipe.
+//! `ring_series`: how a tree grew, written down in the recipe.
 //!
 //! Either the widths of all rings from the pith outwards, or sections of equal area, as Shibasaki & Aoyama assume,
 //! eq. (1): `S_n = S_1 + (n - 1) dS`. Heights follow from the extended allometry, eq. (2),
 //! `1 / H = 1 / (A D^h) + 1 / H*` with the diameter D = 2 R in cm and heights in m, or a height is given for the
 //! last year: then the same law is stretched to reach it.
 
+use super::growth_model::series::series;
+use super::growth_model::species;
+use super::growth_model::{ALLOMETRY, allometry};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
-use crate::value::{RingSeries, Type, Unit, Value};
+use crate::value::{Type, Unit, Value};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// A ring series from literals.
 pub static KIND: Kind = Kind {
-    name: "rings",
+    name: "ring_series",
     version: 1,
     about: "How a tree grew, from the widths of its rings or with sections of equal area.",
     source: "Shibasaki & Aoyama, eqs. (1) and (2)",
@@ -45,19 +48,13 @@ pub static KIND: Kind = Kind {
         )
         .default("1")
         .range(-9999.0, 9999.0),
-        Input::number("factor", Unit::One, "A of the allometry, for cm and m.")
-            .default("1.2")
-            .range(1e-3, 1e3),
-        Input::number("exponent", Unit::One, "h of the allometry.")
-            .default("1")
-            .range(0.1, 10.0),
-        Input::number(
-            "tallest",
-            Unit::Millimetre,
-            "H*, the height that no tree of its kind passes.",
+        Input::new(
+            "species",
+            Type::Choice(&species::NAMES),
+            "Whose allometry gives the heights.",
         )
-        .default("35000")
-        .range(1.0, 1e6),
+        .optional(),
+        ALLOMETRY,
         Input::number(
             "height",
             Unit::Millimetre,
@@ -67,30 +64,24 @@ pub static KIND: Kind = Kind {
         .range(1.0, 1e6),
     ],
     outputs: &[Output::new("rings", Type::RingSeries, "The ring series.")],
-    example: "(nodes: { \"example\": rings(years: 60, radius: 180) })",
+    example: "(nodes: { \"example\": ring_series(years: 60, radius: 180) })",
     build,
 };
 
 fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
-    let areas = areas(inputs)?;
-    let law = [
-        inputs.number("factor"),
-        inputs.number("exponent"),
-        inputs.number("tallest"),
-    ];
-    let mut heights: Vec<f64> = areas
-        .iter()
-        .map(|area| height((area / PI).sqrt(), law))
-        .collect();
+    let first_year = inputs.whole("first_year") as i32;
+    let mut series = series(first_year, areas(inputs)?, &allometry(inputs));
     if inputs.get("height").is_some() {
-        let stretch = inputs.number("height") / heights[heights.len() - 1];
-        heights.iter_mut().for_each(|height| *height *= stretch);
+        let stretch = inputs.number("height") / series.heights[series.years() - 1];
+        series
+            .heights
+            .iter_mut()
+            .for_each(|height| *height *= stretch);
     }
-    let series = RingSeries {
-        first_year: inputs.whole("first_year") as i32,
-        areas,
-        heights,
-    };
+    if !series.is_sound() {
+        let message = "the tree does not grow in each year by as much as a number can show";
+        return Err(Failure::new(message).with_hint("choose fewer or wider rings"));
+    }
     Ok(vec![Value::RingSeries(Arc::new(series))])
 }
 
@@ -125,10 +116,4 @@ fn areas(inputs: &Inputs<'_>) -> Result<Vec<f64>, Failure> {
                 .with_hint("write `years: 60, radius: 180`"),
         ),
     }
-}
-
-/// The height in mm of a tree of a radius in mm, by the extended allometry.
-fn height(radius: f64, [factor, exponent, tallest]: [f64; 3]) -> f64 {
-    let free = factor * libm::pow(0.2 * radius, exponent) * 1000.0;
-    free * tallest / (free + tallest)
 }
