@@ -1,4 +1,5 @@
-//! Geometry in double precision: curves that structures and kernels are built from.
+//! Geometry in double precision: curves and meshes that structures and kernels are built from.
 
+pub(crate) mod mesh;
 pub mod spline;
 mod tangents;

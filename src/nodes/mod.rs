@@ -5,6 +5,7 @@ pub mod field;
 pub mod noise;
 pub mod output;
 mod picture;
+pub mod shape;
 pub mod surface;
 pub mod wood;
 
@@ -16,6 +17,7 @@ pub static KINDS: &[&Kind] = &[
     &wood::skeleton_from_file::KIND,
     &wood::growth_field::KIND,
     &surface::material::KIND,
+    &shape::mesh_from_file::KIND,
     &cut::slice_cut::KIND,
     &output::maps::KIND,
     &surface::mix::KIND,
