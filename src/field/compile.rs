@@ -17,6 +17,8 @@ pub struct Program {
     pub(super) slots: usize,
     /// Slots that hold one number throughout, with that number.
     pub(super) constants: Vec<(usize, f32)>,
+    /// The slot of what rounding took from the position, if anything reads it.
+    pub(super) remainder: Option<usize>,
     pub(super) outputs: Vec<Vec<usize>>,
     pub(super) margin: usize,
     pub(super) key: Key,
@@ -112,6 +114,7 @@ struct Compiler {
     constant_of: HashMap<u32, usize>,
     constant_columns: HashSet<usize>,
     constants: Vec<(usize, f32)>,
+    remainder: Option<usize>,
     steps: Vec<Step>,
     columns: usize,
 }
@@ -132,6 +135,7 @@ impl Compiler {
             constant_of: HashMap::new(),
             constant_columns: HashSet::new(),
             constants: Vec::new(),
+            remainder: None,
             steps: Vec::new(),
             columns: POSITION.len(),
         }
@@ -153,6 +157,7 @@ impl Compiler {
             steps: self.steps,
             slots: self.columns,
             constants: self.constants,
+            remainder: self.remainder,
             outputs: outputs?,
             margin,
             key: key.finish(),
@@ -187,7 +192,7 @@ impl Compiler {
     /// The dependencies of a field that have no columns yet.
     fn missing(&mut self, field: &Field, place: usize) -> Vec<(Field, usize)> {
         let wanted = match &field.0.operation {
-            Operation::Constant(_) | Operation::Position => vec![],
+            Operation::Constant(_) | Operation::Position | Operation::Remainder => vec![],
             Operation::Part { of, .. } => vec![(of.clone(), place)],
             Operation::Kernel { inputs, .. } => {
                 inputs.iter().map(|input| (input.clone(), place)).collect()
@@ -230,6 +235,7 @@ impl Compiler {
                 values.iter().map(|value| self.constant(*value)).collect()
             }
             Operation::Position => self.places[place].position.to_vec(),
+            Operation::Remainder => vec![self.remainder(place)],
             Operation::Part { of, first } => {
                 self.columns_of[&(of.key(), place)][*first..*first + field.width()].to_vec()
             }
@@ -329,6 +335,16 @@ impl Compiler {
         self.constants.push((column, value));
         self.constant_columns.insert(column);
         column
+    }
+
+    /// The column of what rounding took from the position: of a place that a field opens nothing is known.
+    fn remainder(&mut self, place: usize) -> usize {
+        if self.places[place].outer.is_some() {
+            return self.constant(0.0);
+        }
+        let known = self.remainder.unwrap_or_else(|| self.new_column());
+        self.remainder = Some(known);
+        known
     }
 
     fn new_column(&mut self) -> usize {

@@ -107,6 +107,9 @@ impl Scratch {
         for (slot, column) in POSITION.into_iter().zip(position) {
             self.slots[slot] = column;
         }
+        if let Some(slot) = program.remainder {
+            samples.write_remainders(&mut self.slots[slot], padded);
+        }
     }
 }
 

@@ -5,7 +5,8 @@ use super::compile::{POSITION, Program, Step};
 /// Rewrites a program whose columns are all different into one that reuses buffers.
 pub(super) fn assign(mut program: Program) -> Program {
     let last_read = last_reads(&program);
-    let mut slots = Slots::new(program.slots, &program.constants);
+    let mut slots = Slots::new(&program);
+    program.remainder = program.remainder.map(|column| slots.of[column]);
     program
         .constants
         .iter_mut()
@@ -54,6 +55,7 @@ fn last_reads(program: &Program) -> Vec<usize> {
         .flatten()
         .chain(pinned)
         .chain(&POSITION)
+        .chain(&program.remainder)
     {
         last[*column] = usize::MAX;
     }
@@ -68,7 +70,8 @@ struct Slots {
 }
 
 impl Slots {
-    fn new(columns: usize, constants: &[(usize, f32)]) -> Slots {
+    fn new(program: &Program) -> Slots {
+        let columns = program.slots;
         let mut slots = Slots {
             of: vec![usize::MAX; columns],
             free: vec![],
@@ -77,7 +80,8 @@ impl Slots {
         };
         POSITION
             .iter()
-            .chain(constants.iter().map(|(column, _)| column))
+            .chain(program.constants.iter().map(|(column, _)| column))
+            .chain(&program.remainder)
             .for_each(|c| slots.take(*c));
         slots
     }

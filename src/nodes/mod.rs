@@ -19,6 +19,7 @@ pub static KINDS: &[&Kind] = &[
     &surface::material::KIND,
     &shape::mesh_from_file::KIND,
     &cut::slice_cut::KIND,
+    &cut::rotary_cut::KIND,
     &output::maps::KIND,
     &surface::mix::KIND,
     &wood::colour_pattern::KIND,

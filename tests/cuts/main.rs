@@ -4,11 +4,17 @@
 
 mod meshes;
 mod odd_files;
+mod placed;
+mod rotary;
 
+use fearless_simd::Level;
+use glam::DVec3;
+use std::collections::BTreeMap;
 use std::sync::Arc;
+use yosegi::field::{Field, Program, RunContext, Samples, Scratch};
 use yosegi::node::{Build, Failure, Inputs};
 use yosegi::nodes::shape::mesh_from_file;
-use yosegi::value::{FileContents, Mesh, Value};
+use yosegi::value::{Domain, FileContents, Material, Mesh, Value};
 
 /// What a kind gives for some inputs; the others are left out.
 fn built(
@@ -79,4 +85,45 @@ fn six_volumes(mesh: &Mesh) -> f64 {
         a.dot(b.cross(c))
     };
     mesh.triangles.iter().map(of).sum()
+}
+
+/// A solid whose channel `place` is where one is in it.
+fn where_one_is() -> Value {
+    let place = ("place".to_owned(), Field::position(Domain::Solid));
+    Value::Material(Arc::new(Material {
+        domain: Domain::Solid,
+        channels: BTreeMap::from([place]),
+        size: None,
+    }))
+}
+
+/// A piece of a solid, which a kind cuts.
+fn cut(
+    kind: &'static yosegi::node::Kind,
+    given: &[(&str, Value)],
+) -> Result<Arc<Material>, Failure> {
+    let given = [given, &[("of", where_one_is())]].concat();
+    match built(kind, &given)?.remove(0) {
+        Value::Material(material) => Ok(material),
+        other => panic!("found a {}", other.type_name()),
+    }
+}
+
+fn context() -> RunContext<'static> {
+    RunContext {
+        level: Level::new(),
+        cache: None,
+        filtering: true,
+        cancel: None,
+    }
+}
+
+/// Where points of a piece are in the solid.
+fn places(piece: &Material, points: &[[f64; 3]]) -> Vec<DVec3> {
+    let program = Program::compile(&[piece.channels["place"].clone()]);
+    let mut scratch = Scratch::default();
+    program.run(&Samples::Points(points), &mut scratch, &context());
+    let columns = program.columns(&scratch, 0);
+    let place = |index: usize| [0, 1, 2].map(|axis: usize| f64::from(columns[axis][index]));
+    (0..points.len()).map(|index| place(index).into()).collect()
 }
