@@ -4,11 +4,13 @@
 //! ([`Field::at`]) opens a new domain, whose position is three columns of the old one. Columns get
 //! slots by liveness, so a program needs as many buffers as are alive at once.
 
+use super::charts::Charts;
+use super::within::Within;
 use super::{Field, Kernel, Operation, Sampling};
 use crate::cancel::Cancel;
 use crate::key::{Key, KeyHasher};
 use std::collections::{HashMap, HashSet};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::Arc;
 
 /// A linear list of column operations that gives the columns of some fields.
 #[derive(Debug)]
@@ -28,7 +30,17 @@ pub struct Program {
 #[derive(Debug)]
 pub(super) enum Step {
     /// The change of a column from sample to sample.
-    Spread { of: usize, along: [usize; 2] },
+    Spread {
+        of: usize,
+        along: [usize; 2],
+        /// Which neighbours are of one chart, where there are charts.
+        joins: Option<[usize; 2]>,
+    },
+    /// Which samples are of one chart with the next, along rows and columns.
+    Joins {
+        charts: Vec<usize>,
+        joins: [usize; 2],
+    },
     /// A kernel.
     Kernel(Box<KernelStep>),
 }
@@ -45,35 +57,10 @@ pub(super) struct KernelStep {
     pub(super) outputs: Vec<usize>,
     /// Gives the outputs inside single pixels, where the kernel cannot filter.
     pub(super) within: Option<Within>,
+    /// The charts of the samples, if that is where the outputs are averaged.
+    pub(super) charts: Vec<usize>,
     /// How many samples beyond the tile the outputs are read.
     pub(super) margin: usize,
-}
-
-/// The program that gives one field at its samples' own positions, compiled when it is first needed:
-/// each holds the whole way to its field, so a long chain of kernels that cannot filter would grow with
-/// the square of its length.
-#[derive(Debug)]
-pub(super) struct Within {
-    field: Field,
-    program: OnceLock<Program>,
-    compiling: Mutex<()>,
-}
-
-impl Within {
-    /// `None` if the run is cancelled before it is compiled.
-    pub(super) fn program(&self, cancel: Option<&Cancel>) -> Option<&Program> {
-        if let Some(program) = self.program.get() {
-            return Some(program);
-        }
-        // One thread compiles, the others wait for it.
-        let _compiling = self.compiling.lock();
-        if self.program.get().is_none() {
-            let field = std::slice::from_ref(&self.field);
-            let compiled = Compiler::new(false).compile(field, cancel)?;
-            let _ = self.program.set(compiled);
-        }
-        self.program.get()
-    }
 }
 
 /// Slots 0 to 2 hold the position of the samples.
@@ -82,13 +69,23 @@ pub(super) const POSITION: [usize; 3] = [0, 1, 2];
 impl Program {
     /// Compiles a program whose outputs are the columns of `fields`, in order.
     pub fn compile(fields: &[Field]) -> Program {
-        let program = Compiler::new(true).compile(fields, None);
+        Program::compile_in_charts(fields, &[])
+    }
+
+    /// As [`Program::compile`], of a piece on which samples are neighbours only if all of `charts` have the same
+    /// values at both: spreads and means do not reach from one chart into another.
+    pub fn compile_in_charts(fields: &[Field], charts: &[Field]) -> Program {
+        let program = Compiler::new(true, charts).compile(fields, None);
         program.expect("nobody cancels it")
     }
 
-    /// As [`Program::compile`]; `None` if the run is cancelled meanwhile.
-    pub(crate) fn compile_until(fields: &[Field], cancel: &Cancel) -> Option<Program> {
-        Compiler::new(true).compile(fields, Some(cancel))
+    /// As [`Program::compile_in_charts`]; `None` if the run is cancelled meanwhile.
+    pub(crate) fn compile_until(
+        fields: &[Field],
+        charts: &[Field],
+        cancel: &Cancel,
+    ) -> Option<Program> {
+        Compiler::new(true, charts).compile(fields, Some(cancel))
     }
 
     /// Identifies the program: two with the same key do the same.
@@ -105,8 +102,9 @@ struct Place {
     outer: Option<(usize, Field)>,
 }
 
-struct Compiler {
+pub(super) struct Compiler {
     supersampling: bool,
+    charts: Charts,
     places: Vec<Place>,
     place_of: HashMap<(usize, Key), usize>,
     columns_of: HashMap<(Key, usize), Vec<usize>>,
@@ -120,7 +118,7 @@ struct Compiler {
 }
 
 impl Compiler {
-    fn new(supersampling: bool) -> Compiler {
+    pub(super) fn new(supersampling: bool, charts: &[Field]) -> Compiler {
         let root = Place {
             key: KeyHasher::new("root", 1).finish(),
             position: POSITION,
@@ -128,6 +126,7 @@ impl Compiler {
         };
         Compiler {
             supersampling,
+            charts: Charts::of(charts),
             places: vec![root],
             place_of: HashMap::new(),
             columns_of: HashMap::new(),
@@ -142,9 +141,11 @@ impl Compiler {
     }
 
     /// `None` if the run is cancelled meanwhile.
-    fn compile(mut self, fields: &[Field], cancel: Option<&Cancel>) -> Option<Program> {
+    pub(super) fn compile(mut self, fields: &[Field], cancel: Option<&Cancel>) -> Option<Program> {
         let mut key = KeyHasher::new("program", 1);
         key.whole(i64::from(self.supersampling));
+        self.charts.add_to_key(&mut key);
+        self.divide_into_charts(cancel)?;
         let outputs: Option<Vec<Vec<usize>>> = fields
             .iter()
             .map(|field| {
@@ -163,6 +164,23 @@ impl Compiler {
             key: key.finish(),
         };
         Some(super::slots::assign(program))
+    }
+
+    /// Finds out which samples are of one chart; `None` if the run is cancelled meanwhile.
+    fn divide_into_charts(&mut self, cancel: Option<&Cancel>) -> Option<()> {
+        for chart in self.charts.fields.clone() {
+            let columns = self.columns(&chart, cancel)?;
+            self.charts.columns.extend(columns);
+        }
+        if !self.charts.columns.is_empty() {
+            let (charts, joins) = (
+                self.charts.columns.clone(),
+                [self.new_column(), self.new_column()],
+            );
+            self.steps.push(Step::Joins { charts, joins });
+            self.charts.joins = Some(joins);
+        }
+        Some(())
     }
 
     /// The columns of a field in the root place, with everything it depends on.
@@ -271,23 +289,28 @@ impl Compiler {
             .map(|(column, of)| kernel.reads_spread(column).then(|| self.spread(*of)))
             .collect();
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
-        let within = self.may_be_supersampled(&*kernel, &inputs).then(|| Within {
-            field: self.seen_from_root(field, place),
-            program: OnceLock::new(),
-            compiling: Mutex::new(()),
+        let within = self.may_be_supersampled(&*kernel, &inputs).then(|| {
+            Within::new(
+                self.seen_from_root(field, place),
+                self.charts.fields.clone(),
+            )
         });
-        let key = KeyHasher::new("step", 1)
-            .key(field.key())
-            .key(self.places[place].key)
-            .finish();
+        let mut key = KeyHasher::new("step", 1);
+        key.key(field.key()).key(self.places[place].key);
+        self.charts.add_to_key(&mut key);
+        let charts = match within {
+            Some(_) => self.charts.columns.clone(),
+            None => vec![],
+        };
         let step = KernelStep {
             kernel,
             node,
-            key,
+            key: key.finish(),
             inputs,
             spreads,
             outputs: outputs.clone(),
             within,
+            charts,
             margin: 0,
         };
         self.steps.push(Step::Kernel(Box::new(step)));
@@ -321,7 +344,8 @@ impl Compiler {
             return *known;
         }
         let along = [self.new_column(), self.new_column()];
-        self.steps.push(Step::Spread { of, along });
+        let joins = self.charts.joins;
+        self.steps.push(Step::Spread { of, along, joins });
         self.spread_of.insert(of, along);
         along
     }

@@ -4,6 +4,7 @@
 //! together with all the other fields of an output, into one linear list of column operations.
 //! Two fields with the same [`Field::key`] have the same values, so they are computed once.
 
+mod charts;
 mod compile;
 mod cost;
 mod kernel;
@@ -13,6 +14,7 @@ mod slots;
 mod spread;
 mod supersample;
 mod transpose;
+mod within;
 
 pub use compile::Program;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};

@@ -103,10 +103,15 @@ impl Slots {
 impl Step {
     pub(super) fn reads(&self) -> Vec<usize> {
         match self {
-            Step::Spread { of, .. } => vec![*of],
+            Step::Spread { of, joins, .. } => {
+                let joins = joins.iter().flatten();
+                joins.chain([of]).copied().collect()
+            }
+            Step::Joins { charts, .. } => charts.clone(),
             Step::Kernel(step) => {
                 let spreads = step.spreads.iter().flatten().flatten();
-                step.inputs.iter().chain(spreads).copied().collect()
+                let read = step.inputs.iter().chain(&step.charts);
+                read.chain(spreads).copied().collect()
             }
         }
     }
@@ -114,6 +119,7 @@ impl Step {
     pub(super) fn writes(&self) -> Vec<usize> {
         match self {
             Step::Spread { along, .. } => along.to_vec(),
+            Step::Joins { joins, .. } => joins.to_vec(),
             Step::Kernel(step) => step.outputs.clone(),
         }
     }
@@ -121,12 +127,15 @@ impl Step {
     fn rename(&mut self, slot_of: &[usize]) {
         let rename = |column: &mut usize| *column = slot_of[*column];
         match self {
-            Step::Spread { of, along } => {
+            Step::Joins { charts, joins } => charts.iter_mut().chain(joins).for_each(rename),
+            Step::Spread { of, along, joins } => {
                 rename(of);
+                joins.iter_mut().flatten().for_each(rename);
                 along.iter_mut().for_each(rename);
             }
             Step::Kernel(step) => {
                 step.inputs.iter_mut().for_each(rename);
+                step.charts.iter_mut().for_each(rename);
                 step.spreads.iter_mut().flatten().flatten().for_each(rename);
                 step.outputs.iter_mut().for_each(rename);
             }

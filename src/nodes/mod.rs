@@ -20,6 +20,7 @@ pub static KINDS: &[&Kind] = &[
     &shape::mesh_from_file::KIND,
     &cut::slice_cut::KIND,
     &cut::rotary_cut::KIND,
+    &cut::mesh_cut::KIND,
     &output::maps::KIND,
     &surface::mix::KIND,
     &wood::colour_pattern::KIND,

@@ -94,6 +94,7 @@ fn where_one_is() -> Value {
         domain: Domain::Solid,
         channels: BTreeMap::from([place]),
         size: None,
+        surface: None,
     }))
 }
 

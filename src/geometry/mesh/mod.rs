@@ -1,10 +1,13 @@
 //! Meshes from loose triangles: equal points are one, every corner has a normal and a place on the square.
 
+mod atlas;
 mod charts;
 mod normals;
 mod overlap;
 mod packing;
 mod unwrap;
+
+pub(crate) use atlas::Atlas;
 
 use crate::value::{Mesh, Triangle};
 use glam::{DVec2, DVec3};

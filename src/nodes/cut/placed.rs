@@ -60,5 +60,6 @@ pub(super) fn piece(solid: &Material, position: &Field, size: [f64; 2]) -> Value
         domain: Domain::Plane,
         channels: channels.collect(),
         size: Some(size),
+        surface: None,
     }))
 }
