@@ -49,6 +49,9 @@ fn add_material(key: &mut KeyHasher, material: &Material) {
     material.size.iter().flatten().for_each(|length| {
         key.number(*length);
     });
+    if let Some(surface) = &material.surface {
+        surface.add_to_key(key);
+    }
 }
 
 /// The bytes of a structure; empty for values that are not structures.

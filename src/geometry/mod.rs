@@ -1,4 +1,6 @@
-//! Geometry in double precision: curves that structures and kernels are built from.
+//! Geometry in double precision: curves and meshes that structures and kernels are built from.
 
+mod box_tree;
+pub(crate) mod mesh;
 pub mod spline;
 mod tangents;

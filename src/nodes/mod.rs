@@ -8,6 +8,7 @@ pub mod output;
 mod picture;
 mod random;
 pub mod rings;
+pub mod shape;
 pub mod surface;
 pub mod wood;
 
@@ -22,7 +23,10 @@ pub static KINDS: &[&Kind] = &[
     &rings::ring_series::KIND,
     &wood::virtual_energy::KIND,
     &surface::material::KIND,
+    &shape::mesh_from_file::KIND,
     &cut::slice_cut::KIND,
+    &cut::rotary_cut::KIND,
+    &cut::mesh_cut::KIND,
     &output::maps::KIND,
     &surface::mix::KIND,
     &wood::colour_pattern::KIND,

@@ -10,7 +10,7 @@ mod types;
 
 pub use climate::{Climate, Month};
 pub use colour_pattern::{AfterEnd, ColourPattern};
-pub use material::{FileType, MapFormat, Maps, Material, SampleType};
+pub use material::{FileType, MapFormat, Maps, Material, SampleType, Surface};
 pub use mesh::{Mesh, Triangle};
 pub use ring_series::RingSeries;
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};

@@ -1,0 +1,3 @@
+//! Shapes: meshes that materials are cut for.
+
+pub mod mesh_from_file;
