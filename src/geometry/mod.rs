@@ -1,4 +1,5 @@
-//! Geometry in double precision: curves that structures and kernels are built from.
+//! Geometry in double precision: curves and triangles that structures and kernels are built from.
 
+pub(crate) mod hierarchy;
 pub mod spline;
 mod tangents;

@@ -5,7 +5,9 @@ pub mod field;
 pub mod noise;
 pub mod output;
 mod picture;
+pub mod shape;
 pub mod surface;
+pub mod view;
 pub mod wood;
 
 use crate::node::Kind;
@@ -38,6 +40,8 @@ pub static KINDS: &[&Kind] = &[
     &field::transform_field::KIND,
     &field::image_from_file::KIND,
     &surface::blend::KIND,
+    &shape::block::KIND,
+    &view::view::KIND,
 ];
 
 /// The kind called `name`.

@@ -1,0 +1,3 @@
+//! Shapes: meshes of things that materials are seen on.
+
+pub mod block;
