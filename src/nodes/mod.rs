@@ -41,6 +41,7 @@ pub static KINDS: &[&Kind] = &[
     &field::image_from_file::KIND,
     &surface::blend::KIND,
     &shape::block::KIND,
+    &shape::log::KIND,
     &view::view::KIND,
 ];
 
