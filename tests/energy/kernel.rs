@@ -22,10 +22,12 @@ fn columns_are_within_a_hundred_thousandth_of_the_largest() {
         for is_straight in [false, true] {
             let (model, points) = (tree(reference, is_straight), points());
             let found = columns(&model, &points, Level::new());
-            let expected: Vec<[f64; 5]> = points
+            let expected: Vec<[f64; 7]> = points
                 .iter()
                 .map(|point| {
                     let terms = model.terms(*point);
+                    let offset = model.axis.offset(*point).truncate();
+                    let place = offset.normalize_or_zero() * (terms.radius - terms.wave).max(0.0);
                     let share = |energy: f64| 1.0 - libm::exp(-0.5 * energy);
                     [
                         terms.radius,
@@ -33,10 +35,12 @@ fn columns_are_within_a_hundred_thousandth_of_the_largest() {
                         share(terms.branches),
                         share(terms.burls),
                         terms.wave,
+                        place.x,
+                        place.y,
                     ]
                 })
                 .collect();
-            for column in 0..5 {
+            for column in 0..7 {
                 let largest = expected
                     .iter()
                     .map(|row| row[column].abs())

@@ -9,6 +9,7 @@ pub mod position;
 mod profile;
 pub mod ramp;
 pub mod remap;
+pub mod sample_at;
 pub mod separate;
 pub mod threshold;
 pub mod transform;

@@ -59,7 +59,7 @@ pub static KIND: Kind = Kind {
         Input::new(
             "extras",
             Type::Channels,
-            "Channels of your own, such as `growth_time`.",
+            "Channels of your own, such as `growth_time`; vectors by links, such as `fibre`.",
         )
         .per_point()
         .optional(),

@@ -2,6 +2,7 @@
 
 pub mod colour_pattern;
 pub mod energy;
+pub mod fibre_field;
 pub mod growth;
 pub mod growth_field;
 pub mod pattern_lookup;

@@ -34,6 +34,7 @@ use super::energy::{
 use super::ring_time::{Inside, RingTime};
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::nodes::field::combine::Join;
 use crate::nodes::random::Random;
 use crate::value::{Domain, RingSeries, Type, Unit, Value};
 
@@ -102,6 +103,12 @@ pub static KIND: Kind = Kind {
         Output::field("inside", Type::Number(Unit::One), "1 inside the bark, 0 outside.").on(Domain::Solid),
         Output::field("radius", Type::Number(Unit::Millimetre), "The radius r_eq, without waves.").on(Domain::Solid),
         Output::field("energy", Type::Number(Unit::One), "The energy E.").on(Domain::Solid),
+        Output::field(
+            "place",
+            Type::Vector(Unit::Millimetre),
+            "Where the point would be without branches, burls, waves and bends: noise there follows the grain.",
+        )
+        .on(Domain::Solid),
     ],
     example: "(nodes: {
         \"tree\": skeleton(
@@ -186,10 +193,14 @@ fn build(inputs: &Inputs<'_>, context: &Build<'_>) -> Result<Vec<Value>, Failure
     let position = Field::position(Domain::Solid);
     let energy = context.kernel(EnergyKernel::new(model), vec![position.clone()]);
     let [radius, whole, branch, burl, wave] = [0, 1, 2, 3, 4].map(|column| energy.part(column, 1));
-    let time = context.kernel(RingTime::new(rings), vec![radius.clone(), wave, position]);
+    let time = context.kernel(
+        RingTime::new(rings),
+        vec![radius.clone(), wave, position.clone()],
+    );
     let age = rings.years() as f64;
     let inside = context.kernel(Inside { age }, vec![time.clone()]);
-    let fields = [time, branch, burl, inside, radius, whole];
+    let place = context.kernel(Join, vec![energy.part(5, 2), position.part(2, 1)]);
+    let fields = [time, branch, burl, inside, radius, whole, place];
     Ok(fields.map(Value::Field).to_vec())
 }
 

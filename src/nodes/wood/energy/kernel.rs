@@ -19,8 +19,8 @@ use std::fmt;
 /// Samples in a run.
 pub(super) const RUN: usize = 128;
 
-/// From the position (x, y, z) in mm to radius in mm, energy, the shares of branches and of burls, and the wave
-/// in mm.
+/// From the position (x, y, z) in mm to radius in mm, energy, the shares of branches and of burls, the wave in mm, and
+/// the place in the bare trunk in x and y, in mm.
 pub struct EnergyKernel {
     model: EnergyModel,
     axis: AxisTable,
@@ -32,7 +32,7 @@ pub struct EnergyKernel {
 
 impl EnergyKernel {
     /// The columns it writes.
-    pub const WIDTH: usize = 5;
+    pub const WIDTH: usize = 7;
 
     /// Lays the model out for columns.
     pub fn new(model: EnergyModel) -> EnergyKernel {
@@ -97,7 +97,7 @@ impl Kernel for EnergyKernel {
 
     fn evaluate(&self, block: &mut Block<'_>) {
         let [x, y, z] = [0, 1, 2].map(|column| block.inputs[column].values);
-        let [radius, energy, branch, burl, wave] = block.outputs else {
+        let [radius, energy, branch, burl, wave, place_x, place_y] = block.outputs else {
             return;
         };
         let starts = (0..x.len()).step_by(RUN);
@@ -111,7 +111,8 @@ impl Kernel for EnergyKernel {
                 energy: &mut energy[range.clone()],
                 branch: &mut branch[range.clone()],
                 burl: &mut burl[range.clone()],
-                wave: &mut wave[range],
+                wave: &mut wave[range.clone()],
+                place: [&mut place_x[range.clone()], &mut place_y[range]],
             };
             dispatch!(block.level, simd => run.evaluate(simd, columns));
         }
@@ -131,6 +132,7 @@ struct Columns<'a> {
     branch: &'a mut [f32],
     burl: &'a mut [f32],
     wave: &'a mut [f32],
+    place: [&'a mut [f32]; 2],
 }
 
 /// Samples of which all charges are summed up.
@@ -194,6 +196,8 @@ impl Run<'_> {
                 columns.wave,
             );
         }
+        let offset = [&dx[..length], &dy[..length]];
+        bare_places(simd, offset, [columns.radius, columns.wave], columns.place);
     }
 
     /// From the energies to the radius, and to the shares of branches and burls.
@@ -241,5 +245,25 @@ impl Run<'_> {
             (-half_exponential(simd, of_branches) + 1.0).store_slice(branch);
             (-half_exponential(simd, of_burls) + 1.0).store_slice(burl);
         }
+    }
+}
+
+/// Writes where points would be if rings were circles about an upright axis: at the radius of their ring.
+#[simd]
+fn bare_places<S: Simd>(
+    simd: S,
+    [dx, dy]: [&[f32]; 2],
+    [radius, wave]: [&[f32]; 2],
+    [x, y]: [&mut [f32]; 2],
+) {
+    let lanes = S::f32s::LEN;
+    for start in (0..radius.len()).step_by(lanes) {
+        let range = start..start + lanes;
+        let load = |column: &[f32]| S::f32s::from_slice(simd, &column[range.clone()]);
+        let (dx, dy) = (load(dx), load(dy));
+        let ring = (load(radius) - load(wave)).max(0.0);
+        let scale = ring / (dx * dx + dy * dy).sqrt().max(f32::MIN_POSITIVE);
+        (dx * scale).store_slice(&mut x[range.clone()]);
+        (dy * scale).store_slice(&mut y[range.clone()]);
     }
 }
