@@ -10,7 +10,7 @@
 //!
 //! The tilt is the sine of the angle by which the fibre leans outwards from upright; it is what makes curly
 //! figure shine: two fibres that lean by t to either side send light into directions that are 4 t apart
-//! (Marschner and others 2005). The gradient of time is taken by central differences.
+//! (Marschner and others 2005). The gradient of time is taken by differences to points a step away along x, y and z.
 
 use crate::field::{Block, Field, Kernel, Sampling};
 use crate::key::KeyHasher;
@@ -61,19 +61,13 @@ pub static KIND: Kind = Kind {
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let (time, step) = (inputs.field("time"), inputs.number("step"));
-    let sides = [DVec3::X, DVec3::Y, DVec3::Z]
-        .iter()
-        .flat_map(|axis| [*axis, -*axis]);
-    let times = sides.map(|side| {
+    let away = DVec3::AXES.map(|axis| {
+        let amount = axis * step;
         let whole = vec![Field::position(Domain::Solid), Field::constants(&[1.0; 3])];
-        time.at(&build.kernel(
-            Offset {
-                amount: side * step,
-            },
-            whole,
-        ))
+        time.at(&build.kernel(Offset { amount }, whole))
     });
-    let gradient = build.kernel(Differences { step }, times.collect());
+    let times = std::iter::once(time).chain(away).collect();
+    let gradient = build.kernel(Differences { step }, times);
     let fibre = build.kernel(Fibre, vec![gradient]);
     Ok(vec![
         Value::Field(fibre.part(0, 3)),
@@ -81,7 +75,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     ])
 }
 
-/// From the times at both sides along x, y and z to the gradient in years per mm.
+/// From the times here and a step away along x, y and z to the gradient in years per mm.
 #[derive(Debug)]
 struct Differences {
     step: f64,
@@ -99,12 +93,13 @@ impl Kernel for Differences {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let scale = (0.5 / self.step) as f32;
-        for (output, sides) in block.outputs.iter_mut().zip(block.inputs.chunks_exact(2)) {
-            for ((output, after), before) in
-                output.iter_mut().zip(sides[0].values).zip(sides[1].values)
-            {
-                *output = scale * (after - before);
+        let scale = (1.0 / self.step) as f32;
+        let [here, away @ ..] = block.inputs else {
+            return;
+        };
+        for (output, away) in block.outputs.iter_mut().zip(away) {
+            for ((output, away), here) in output.iter_mut().zip(away.values).zip(here.values) {
+                *output = scale * (away - here);
             }
         }
     }
