@@ -43,6 +43,8 @@ pub static KINDS: &[&Kind] = &[
     &surface::blend::KIND,
     &rings::weather::KIND,
     &rings::growth_model::KIND,
+    &rings::ring_plot::KIND,
+    &output::ring_table::KIND,
 ];
 
 /// The kind called `name`.

@@ -1,4 +1,5 @@
 //! From weather to tree rings.
 
 pub mod growth_model;
+pub mod ring_plot;
 pub mod weather;
