@@ -5,6 +5,10 @@ mod model;
 mod outputs;
 mod statistics;
 mod weather;
+mod wood;
+
+#[path = "../support/levels.rs"]
+mod levels;
 
 #[path = "../support/workshop.rs"]
 #[allow(dead_code, reason = "rings need not all of it")]

@@ -19,7 +19,7 @@ use glam::Vec3;
 use std::fmt;
 
 /// Samples in a run: they stay in the fastest cache, and few branches are near all of them.
-const RUN: usize = 128;
+pub(super) const RUN: usize = 128;
 
 /// From the position (x, y, z) in mm to T in years and the share of the branches in it.
 pub struct GrowthKernel {
@@ -61,6 +61,7 @@ impl Kernel for GrowthKernel {
             curve,
             branches,
             settings,
+            rings,
         } = &self.model;
         key.text("growth")
             .whole(i64::from(growth_field::KIND.version))
@@ -88,6 +89,11 @@ impl Kernel for GrowthKernel {
             numbers(&branch.direction.to_array());
             numbers(&[branch.start_time, branch.thickening]);
         }
+        if let Some(rings) = rings {
+            numbers(&rings.areas);
+            numbers(&rings.heights);
+            key.text("rings").whole(rings.years() as i64);
+        }
     }
 
     fn width(&self) -> usize {
@@ -101,7 +107,12 @@ impl Kernel for GrowthKernel {
         } else {
             1000
         };
-        5.0 + self.branches.len().min(most) as f32
+        let of_trunk = if self.model.rings.is_some() {
+            15.0
+        } else {
+            5.0
+        };
+        of_trunk + self.branches.len().min(most) as f32
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {

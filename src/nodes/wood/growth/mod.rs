@@ -8,6 +8,8 @@ pub(super) mod log_file;
 mod model;
 mod near;
 mod power;
+mod rings;
+mod steps;
 mod trunk;
 
 pub use kernel::GrowthKernel;

@@ -2,8 +2,9 @@
 
 use crate::geometry::spline::TrunkCurve;
 use crate::node::Failure;
-use crate::value::{Skeleton, Thickness};
+use crate::value::{RingSeries, Skeleton, Thickness};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// The fastest thickening of a branch in mm/year.
 const FASTEST: f64 = 1e5;
@@ -11,9 +12,9 @@ const FASTEST: f64 = 1e5;
 /// How a tree grows along its skeleton.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowthSettings {
-    /// Speed v_e in mm/year at which trunk and branches grow longer.
+    /// Speed v_e in mm/year at which branches grow longer, and the trunk unless its rings are known.
     pub elongation: f64,
-    /// Speed v_h in mm/year at which the trunk grows thicker.
+    /// Speed v_h in mm/year at which the trunk grows thicker, unless its rings are known.
     pub thickening: f64,
     /// Exponent k of the blend between trunk and branches; 2 is eq. (18).
     pub sharpness: f64,
@@ -52,6 +53,8 @@ pub struct GrowthModel {
     pub branches: Vec<GrowingBranch>,
     /// How it grows.
     pub settings: GrowthSettings,
+    /// How tall and thick the trunk was in each year, instead of its speeds.
+    pub rings: Option<Arc<RingSeries>>,
 }
 
 /// The parts of the time at which growth along a branch reached a point, in years.
@@ -108,19 +111,33 @@ impl GrowthModel {
     /// Nodes that make no curve, a branch that starts beyond the ends of the trunk, a direction of length
     /// 0, a thickness that is not positive or cannot be reached.
     pub fn new(skeleton: &Skeleton, settings: GrowthSettings) -> Result<GrowthModel, Failure> {
+        GrowthModel::with_rings(skeleton, settings, None)
+    }
+
+    /// As [`GrowthModel::new`], with a trunk that grows by a ring series if there is one: at the height z, ring n
+    /// reaches to `sqrt((S_n - S_m) / pi)` from its curve, m being the time at which the tree was as tall as z.
+    ///
+    /// # Errors
+    /// As [`GrowthModel::new`].
+    pub fn with_rings(
+        skeleton: &Skeleton,
+        settings: GrowthSettings,
+        rings: Option<Arc<RingSeries>>,
+    ) -> Result<GrowthModel, Failure> {
         let curve = TrunkCurve::through(&skeleton.trunk, skeleton.tangents)
             .map_err(|error| Failure::of_input("skeleton", format!("trunk: {error}")))?;
         let mut model = GrowthModel {
             curve,
             branches: vec![],
             settings,
+            rings,
         };
         for (index, branch) in skeleton.branches.iter().enumerate() {
             let start = model.curve.at(branch.height);
             let mut growing = GrowingBranch {
                 start,
                 direction: branch.direction.normalize_or_zero(),
-                start_time: branch.height / settings.elongation,
+                start_time: model.tip_time(branch.height),
                 thickening: 0.0,
             };
             let thickening = model
@@ -134,10 +151,21 @@ impl GrowthModel {
         Ok(model)
     }
 
-    /// T_1 in years, eqs. (9)-(13): cones about the trunk's curve.
+    /// When the trunk's tip was at a height in mm, in years.
+    fn tip_time(&self, height: f64) -> f64 {
+        match &self.rings {
+            Some(rings) => rings.time_of_height(height),
+            None => height / self.settings.elongation,
+        }
+    }
+
+    /// T_1 in years: cones about the trunk's curve, eqs. (9)-(13), or rings.
     pub fn trunk_time(&self, point: DVec3) -> f64 {
         let across = (point - self.curve.at(point.z)).truncate().length();
-        point.z / self.settings.elongation + across / self.settings.thickening
+        match &self.rings {
+            Some(rings) => rings.time_at(across, point.z),
+            None => point.z / self.settings.elongation + across / self.settings.thickening,
+        }
     }
 
     /// When the wood at `point` (mm) grew, with all terms.

@@ -2,6 +2,7 @@
 
 use super::GrowthModel;
 use super::heights::Heights;
+use super::rings::RingTable;
 use crate::field::transposed;
 use crate::geometry::spline::Piece;
 use fearless_simd::f32x4;
@@ -19,6 +20,7 @@ pub(super) struct TrunkTable {
     pieces: Vec<PieceConstants>,
     years_along: f32,
     years_across: f32,
+    rings: Option<RingTable>,
 }
 
 /// `(x, y) = c0 + h (c1 + h (c2 + h c3))` with `h = z - start`.
@@ -48,6 +50,7 @@ impl TrunkTable {
                 .collect(),
             years_along: (1.0 / model.settings.elongation) as f32,
             years_across: (1.0 / model.settings.thickening) as f32,
+            rings: model.rings.as_deref().map(RingTable::new),
         }
     }
 }
@@ -64,7 +67,7 @@ impl PieceConstants {
     }
 }
 
-/// Writes T_1 in years, eqs. (9)-(13).
+/// Writes T_1 in years, eqs. (9)-(13) or by rings.
 #[simd]
 pub(super) fn trunk_times<S: Simd>(
     simd: S,
@@ -74,6 +77,10 @@ pub(super) fn trunk_times<S: Simd>(
 ) {
     // In two passes: what one lane at a time has stored cannot be loaded as a vector at once.
     squares_across(simd, table, position, times);
+    if let Some(rings) = &table.rings {
+        rings.times(simd, position[2], times);
+        return;
+    }
     let lanes = S::f32s::LEN;
     for (z, times) in position[2]
         .chunks_exact(lanes)
