@@ -29,8 +29,8 @@ impl RingTable {
             std::iter::once([0.0; 2]).chain(knots).collect()
         };
         RingTable {
-            area_of_height: Steps::new(&with_origin(&mut heights.into_iter())),
-            time_of_area: Steps::new(&with_origin(&mut times.into_iter())),
+            area_of_height: Steps::new(&with_origin(&mut heights.into_iter()), false),
+            time_of_area: Steps::new(&with_origin(&mut times.into_iter()), true),
         }
     }
 
