@@ -47,7 +47,7 @@ impl Engine {
         }
         let has_failed = !failures.is_empty();
         for output in outputs.iter().filter(|output| built.has(output.index)) {
-            if let Err(error) = output.check_size(output.maps(&built)) {
+            if let Err(error) = output.check_size(output.files(&built)) {
                 failures.extend_from_slice(error.diagnostics());
             }
         }

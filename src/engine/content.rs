@@ -36,6 +36,9 @@ pub(super) fn key(value: &Value) -> Key {
                 key.text(channel);
             });
         }
+        Value::Table(table) => {
+            key.text("table").text(&table.text);
+        }
         literal => literal.add_to_key(&mut key),
     }
     key.finish()

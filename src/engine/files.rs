@@ -17,6 +17,14 @@ pub(super) fn file_name(output: &str, channel: &str, format: MapFormat) -> Strin
     format!("{output}_{channel}.{}", format.extension())
 }
 
+/// What events and the store call the table of an output, as they call maps after their channels.
+pub(super) const TABLE: &str = "table";
+
+/// The file of an output that is a table.
+pub(super) fn table_name(output: &str) -> String {
+    format!("{output}.csv")
+}
+
 /// Refuses two outputs that would write the same file: `board` with the channel `pale_old`, and
 /// `board_pale` with the channel `old`.
 pub(super) fn refuse_shared(

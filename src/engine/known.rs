@@ -42,7 +42,8 @@ impl OutputRecord {
         let is_sound = |map: &WantedMap| {
             let mut formats = MapFormat::ALL.into_iter();
             let is_named = |format| files::file_name(name, &map.channel, format) == map.file_name;
-            is_name(&map.channel) && formats.any(is_named)
+            let is_table = map.channel == files::TABLE && files::table_name(name) == map.file_name;
+            is_table || is_name(&map.channel) && formats.any(is_named)
         };
         let mut warnings = self.warnings.iter();
         self.maps.iter().all(is_sound) && warnings.all(|(_, text)| content::is_plain(text))

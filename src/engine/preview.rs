@@ -5,6 +5,7 @@ use super::files;
 use super::paint::{Painter, Sheet};
 use super::progress::Meter;
 use super::render::{Output, Render, chosen_outputs};
+use super::wanted::Files;
 use super::{Engine, FlatPiece, RunError};
 use crate::field::{Program, Target};
 use crate::key::{Key, KeyHasher};
@@ -58,18 +59,23 @@ impl Engine {
         let indices: Vec<NodeIndex> = missing.iter().map(|output| output.index).collect();
         let built = self.build(&plan.part(&indices), request.listener)?;
         let there = missing.into_iter().filter(|output| built.has(output.index));
-        let there: Vec<&Output<'_>> = there.collect();
+        // A table has no picture.
+        let maps = there.filter_map(|output| match output.files(&built) {
+            Files::Maps(maps) => Some((output, maps)),
+            Files::Table(_) => None,
+        });
+        let there: Vec<(&Output<'_>, &Maps)> = maps.collect();
         let paths = there
             .iter()
-            .map(|output| (output.index, output.preview_path()));
+            .map(|(output, _)| (output.index, output.preview_path()));
         let paths: Vec<(NodeIndex, PathBuf)> = paths.collect();
         let borrowed = paths.iter().map(|(index, path)| (*index, path.as_path()));
         protected.refuse(&*self.world, request.graph, borrowed)?;
-        for (done, output) in there.iter().enumerate() {
+        for (done, (output, maps)) in there.iter().enumerate() {
             // Each output has its share of the time that is left.
             let left = end.saturating_duration_since(Instant::now());
             let share = left / u32::try_from(there.len() - done).unwrap_or(u32::MAX);
-            output.preview(output.maps(&built), Instant::now() + share)?;
+            output.preview(maps, Instant::now() + share)?;
         }
         Ok(paths.into_iter().map(|(_, path)| path).collect())
     }

@@ -8,7 +8,7 @@ use super::progress::Meter;
 use super::store::{Family, Store, ToldOnce};
 use super::verify::Verification;
 use super::write::Written;
-use super::{Cancel, Engine, FlatPiece, RunError, files};
+use super::{Cancel, Engine, RunError, files};
 use crate::diagnostics::{Code, Diagnostic, nearest};
 use crate::graph::{Graph, no_output};
 use crate::key::Key;
@@ -233,9 +233,9 @@ impl Output<'_> {
         if let Some(known) = known {
             meter.count().expect(known.len(), 0, [0, 0]);
         } else if built.has(self.index) {
-            let maps = self.maps(built);
-            let (count, pixels) = (maps.channels.len(), self.pixels(maps));
-            self.check_size(maps)?;
+            let files = self.files(built);
+            let (count, pixels) = self.work(files);
+            self.check_size(files)?;
             meter.count().expect(count, count, pixels);
         }
         Ok(())
@@ -266,10 +266,10 @@ impl Output<'_> {
         let built = self.engine.build(&alone, self.request.listener)?;
         built.complete()?;
         let told: Vec<&str> = placed.iter().map(|known| &*known.map.channel).collect();
-        let maps = self.maps(&built);
-        self.check_size(maps)?;
-        let painted = maps.channels.len();
-        meter.count().expect(0, painted, self.pixels(maps));
+        let files = self.files(&built);
+        self.check_size(files)?;
+        let (painted, pixels) = self.work(files);
+        meter.count().expect(0, painted, pixels);
         self.paint(&built, meter, &told)
     }
 
@@ -281,10 +281,9 @@ impl Output<'_> {
         told: &[&str],
     ) -> Result<Vec<RenderedMap>, RunError> {
         let start = Instant::now();
-        let maps = self.maps(built);
-        let pixels = self.pixels(maps);
-        let target = FlatPiece::new(pixels, maps.size);
-        let wanted = self.wanted_maps(maps, &target);
+        let files = self.files(built);
+        let (_, pixels) = self.work(files);
+        let wanted = self.wanted(files);
         let is_there = |map: &WantedMap| told.contains(&&*map.channel) || self.found(map);
         let missing: Vec<&WantedMap> = wanted.iter().filter(|map| !is_there(map)).collect();
         let share = [missing.len(), wanted.len() - missing.len()];
@@ -292,7 +291,7 @@ impl Output<'_> {
         let written = if missing.is_empty() {
             vec![]
         } else {
-            self.write_maps(maps, &target, &missing, meter)?
+            self.write(files, &missing, meter)?
         };
         self.remember(&wanted, built, missing.into_iter().zip(written));
         let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;

@@ -9,7 +9,7 @@ use crate::field::{Field, Program, Target};
 use crate::key::KeyHasher;
 use crate::nodes::output::normal_from_height;
 use crate::output::{LARGEST_BMP, MapKind, bmp_bytes};
-use crate::value::{FileType, Maps, Value};
+use crate::value::{FileType, Maps, Table, Value};
 use petgraph::graph::NodeIndex;
 use std::sync::Arc;
 
@@ -19,12 +19,20 @@ const TILE_BYTES: usize = 1 << 30;
 /// Most operations that the programs of an output may have, those for single pixels included.
 const OPERATIONS: usize = 4_000_000;
 
+/// What an output asks for.
+#[derive(Clone, Copy)]
+pub(super) enum Files<'a> {
+    Maps(&'a Maps),
+    Table(&'a Table),
+}
+
 impl Output<'_> {
-    pub(super) fn maps<'b>(&self, built: &'b Built) -> &'b Maps {
-        let Value::Maps(maps) = &built.values(self.index)[0] else {
-            unreachable!("checking the recipe lets only maps be outputs")
-        };
-        maps
+    pub(super) fn files<'b>(&self, built: &'b Built) -> Files<'b> {
+        match &built.values(self.index)[0] {
+            Value::Maps(maps) => Files::Maps(maps),
+            Value::Table(table) => Files::Table(table),
+            _ => unreachable!("checking the recipe lets only maps and tables be outputs"),
+        }
     }
 
     /// The files that the output writes or has written, with its own index.
@@ -36,17 +44,23 @@ impl Output<'_> {
         let names: Vec<String> = match known {
             Some(maps) => maps.iter().map(|it| it.map.file_name.clone()).collect(),
             None if !built.has(self.index) => vec![],
-            None => {
-                let maps = self.maps(built);
-                let name = |channel: &String| files::file_name(self.name(), channel, maps.format);
-                maps.channels.iter().map(name).collect()
-            }
+            None => match self.files(built) {
+                Files::Maps(maps) => {
+                    let name =
+                        |channel: &String| files::file_name(self.name(), channel, maps.format);
+                    maps.channels.iter().map(name).collect()
+                }
+                Files::Table(_) => vec![files::table_name(self.name())],
+            },
         };
         names.into_iter().map(|name| (self.index, name)).collect()
     }
 
     /// Refuses maps that are larger than the run or their format allows.
-    pub(super) fn check_size(&self, maps: &Maps) -> Result<(), RunError> {
+    pub(super) fn check_size(&self, files: Files<'_>) -> Result<(), RunError> {
+        let Files::Maps(maps) = files else {
+            return Ok(());
+        };
         let [width, height] = self.pixels(maps);
         let (found, limit) = (
             u64::from(width) * u64::from(height),
@@ -139,7 +153,35 @@ impl Output<'_> {
         self.request.pixels.unwrap_or(maps.pixels)
     }
 
-    pub(super) fn wanted_maps(&self, maps: &Maps, target: &FlatPiece) -> Vec<WantedMap> {
+    /// How many files there are, and how many pixels each has; a table counts as one.
+    pub(super) fn work(&self, files: Files<'_>) -> (usize, [u32; 2]) {
+        match files {
+            Files::Maps(maps) => (maps.channels.len(), self.pixels(maps)),
+            Files::Table(_) => (1, [1, 1]),
+        }
+    }
+
+    /// Name and key of each file.
+    pub(super) fn wanted(&self, files: Files<'_>) -> Vec<WantedMap> {
+        match files {
+            Files::Maps(maps) => self.wanted_maps(maps, &self.target(maps)),
+            Files::Table(table) => {
+                let key = KeyHasher::new("table", RESULTS).text(&table.text).finish();
+                vec![WantedMap {
+                    channel: files::TABLE.to_owned(),
+                    file_name: files::table_name(self.name()),
+                    key,
+                }]
+            }
+        }
+    }
+
+    /// Where maps are sampled.
+    pub(super) fn target(&self, maps: &Maps) -> FlatPiece {
+        FlatPiece::new(self.pixels(maps), maps.size)
+    }
+
+    fn wanted_maps(&self, maps: &Maps, target: &FlatPiece) -> Vec<WantedMap> {
         let describe = |channel: &String| {
             let (field, kind) = self.field(maps, channel);
             let mut key = KeyHasher::new("map", RESULTS);

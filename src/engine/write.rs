@@ -5,12 +5,13 @@ use super::paint::{Painter, Sheet};
 use super::progress::Meter;
 use super::render::{Output, WantedMap};
 use super::store::MapRecord;
+use super::wanted::Files;
 use super::{FlatPiece, RunError};
 use crate::field::{ColumnCache, Field, Program, RunContext, Target};
 use crate::output::{self, Contents, Encoder, Faults, MapRequest, MapWriter, Placing};
-use crate::value::Maps;
+use crate::value::{Maps, Table};
 use rayon::prelude::*;
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 
 /// What is known of a map that is in its place.
@@ -35,8 +36,48 @@ impl Written {
 }
 
 impl Output<'_> {
+    /// Writes files and puts them in their places; gives what is known of each then.
+    pub(super) fn write(
+        &self,
+        files: Files<'_>,
+        missing: &[&WantedMap],
+        meter: &Meter<'_>,
+    ) -> Result<Vec<Written>, RunError> {
+        match files {
+            Files::Maps(maps) => self.write_maps(maps, &self.target(maps), missing, meter),
+            Files::Table(table) => {
+                let write = |map: &&WantedMap| self.write_table(table, map);
+                missing.iter().map(write).collect()
+            }
+        }
+    }
+
+    fn write_table(&self, table: &Table, map: &WantedMap) -> Result<Written, RunError> {
+        let (path, contents) = (self.path(map), Contents::default());
+        let write = || {
+            let file = self.engine.world.create(&path)?;
+            let mut file = self.placing(&contents).of(file);
+            file.write_all(table.text.as_bytes())?;
+            file.commit()
+        };
+        let written = write().map_err(|error| RunError::not_written(&output::about(&path, &error)));
+        written.inspect(|()| {
+            self.request.listener.hear(Event::MapWritten {
+                output: self.name().to_owned(),
+                channel: map.channel.clone(),
+                path: path.clone(),
+                not_finite: 0,
+                clamped: 0,
+            });
+        })?;
+        Ok(Written {
+            faults: Faults::default(),
+            contents,
+        })
+    }
+
     /// Paints maps and puts them in their places; gives what is known of each then.
-    pub(super) fn write_maps(
+    fn write_maps(
         &self,
         maps: &Maps,
         target: &FlatPiece,
@@ -131,10 +172,18 @@ impl Output<'_> {
         contents: &Contents,
     ) -> io::Result<Box<dyn MapWriter>> {
         let engine = &self.engine;
-        let placing = Placing {
-            durable: engine.options.durable,
-            contents: engine.store.is_some().then(|| Contents::clone(contents)),
-        };
+        let placing = self.placing(contents);
         output::create_placing(&*engine.world, path, request, &engine.cancel, placing)
+    }
+
+    fn placing(&self, contents: &Contents) -> Placing {
+        Placing {
+            durable: self.engine.options.durable,
+            contents: self
+                .engine
+                .store
+                .is_some()
+                .then(|| Contents::clone(contents)),
+        }
     }
 }

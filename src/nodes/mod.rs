@@ -56,6 +56,8 @@ pub static KINDS: &[&Kind] = &[
     &shape::block::KIND,
     &shape::log::KIND,
     &view::view::KIND,
+    &rings::ring_plot::KIND,
+    &output::ring_table::KIND,
 ];
 
 /// The kind called `name`.

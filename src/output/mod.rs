@@ -279,7 +279,8 @@ fn invalid(message: impl Into<String>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, message.into())
 }
 
-fn about(path: &Path, error: &io::Error) -> io::Error {
+/// An error with the file that it is about.
+pub(crate) fn about(path: &Path, error: &io::Error) -> io::Error {
     io::Error::new(
         error.kind(),
         format!("cannot write `{}`: {error}", path.display()),

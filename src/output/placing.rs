@@ -22,7 +22,7 @@ pub(crate) struct Placing {
 
 impl Placing {
     /// A file that does all this when it is committed.
-    pub(super) fn of(self, file: Box<dyn PendingFile>) -> Box<dyn PendingFile> {
+    pub(crate) fn of(self, file: Box<dyn PendingFile>) -> Box<dyn PendingFile> {
         let placing = self;
         Box::new(Placed { file, placing })
     }

@@ -6,6 +6,7 @@ mod material;
 mod mesh;
 mod ring_series;
 mod skeleton;
+mod table;
 mod types;
 
 pub use climate::{Climate, Month};
@@ -14,6 +15,7 @@ pub use material::{FileType, MapFormat, Maps, Material, SampleType, Surface};
 pub use mesh::{Mesh, Triangle};
 pub use ring_series::RingSeries;
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
+pub use table::Table;
 pub use types::{Domain, Type, Unit};
 
 use crate::field::Field;
@@ -85,6 +87,8 @@ pub enum Value {
     Material(Arc<Material>),
     /// Maps to be written.
     Maps(Arc<Maps>),
+    /// A table to be written, instead of maps.
+    Table(Arc<Table>),
 }
 
 impl Value {
@@ -137,7 +141,8 @@ impl Value {
             | Value::RingSeries(_)
             | Value::Mesh(_)
             | Value::Material(_)
-            | Value::Maps(_) => key,
+            | Value::Maps(_)
+            | Value::Table(_) => key,
         };
     }
 
@@ -191,6 +196,7 @@ impl Value {
             Value::Mesh(_) => "mesh",
             Value::Material(_) => "material",
             Value::Maps(_) => "maps",
+            Value::Table(_) => "table",
         }
     }
 }

@@ -46,6 +46,13 @@ impl RingSeries {
         areas.map(|area| (area / std::f64::consts::PI).sqrt())
     }
 
+    /// Widths of the rings in mm.
+    pub fn widths(&self) -> Vec<f64> {
+        let mut before = 0.0;
+        let width = |radius: f64| radius - std::mem::replace(&mut before, radius);
+        self.radii().map(width).collect()
+    }
+
     /// The time in years at which the section's area was `area` mm²: linear in area within a year, from 0 at the
     /// pith; beyond the last ring as fast as in the last year.
     pub fn time_of_area(&self, area: f64) -> f64 {

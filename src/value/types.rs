@@ -94,7 +94,7 @@ pub enum Type {
     Mesh,
     /// A bundle of fields.
     Material,
-    /// Maps to be written: what an output of a recipe is.
+    /// Files to be written, maps or a table: what an output of a recipe is.
     Maps,
 }
 

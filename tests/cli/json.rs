@@ -279,7 +279,7 @@ fn kinds_are_described_completely() {
         input("growth_field", "elongation"),
         json!({
             "name": "elongation", "type": "number", "unit": "mm/year", "choices": null, "item": null,
-            "parts": null, "varies": "constant", "domain": null, "presence": "required",
+            "parts": null, "varies": "constant", "domain": null, "presence": "optional",
             "default": null, "range": [1.0, 100_000.0],
             "about": input("growth_field", "elongation")["about"],
         })

@@ -153,7 +153,7 @@ fn nodes_lists_and_describes_kinds() {
     assert_eq!(code(&wrong), 2);
     assert_eq!(
         stderr(&wrong),
-        "error: there is no kind `growth_fild`; did you mean `growth_field`?\n"
+        "error: there is no kind `growth_fild`; did you mean `growth_field` or `growth_model`?\n"
     );
     let part = stderr(&place.call(&["nodes", "patern"]));
     for name in ["colour_pattern", "sample_pattern", "pattern_lookup"] {

@@ -151,9 +151,15 @@ fn growth_field(skeleton: &Arc<Skeleton>) -> Result<Vec<Value>, Failure> {
 fn the_fields_are_solid_and_share_one_kernel() {
     let skeleton = Arc::new(super::tree());
     let fields = growth_field(&skeleton).unwrap();
-    let [Value::Field(time), Value::Field(share)] = &fields[..] else {
-        panic!("expected two fields")
+    let [
+        Value::Field(time),
+        Value::Field(share),
+        Value::Field(inside),
+    ] = &fields[..]
+    else {
+        panic!("expected three fields")
     };
+    assert_eq!(inside.as_constant(), Some(&[1.0][..]), "no age, no bark");
     assert_eq!(
         (time.domain(), share.domain()),
         (Domain::Solid, Domain::Solid)

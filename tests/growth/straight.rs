@@ -32,7 +32,7 @@ fn bent() -> GrowthModel {
         sharpness: 2.0,
         reach: None,
     };
-    GrowthModel::straight(&skeleton, settings).unwrap()
+    GrowthModel::straight(&skeleton, settings, None).unwrap()
 }
 
 fn see(model: &GrowthModel, point: DVec3) -> Seen {
@@ -115,7 +115,7 @@ fn blends_meet_both_neighbours() {
 fn the_kernel_is_within_a_hundred_thousandth_of_the_largest() {
     let settings = super::settings(2.0);
     for skeleton in [tree(), many_nodes()] {
-        let model = GrowthModel::straight(&skeleton, settings).unwrap();
+        let model = GrowthModel::straight(&skeleton, settings, None).unwrap();
         let trunk = model.trunk.straight().unwrap();
         let points = scattered(
             4000,
@@ -148,7 +148,7 @@ fn the_kernel_is_within_a_hundred_thousandth_of_the_largest() {
 
 #[test]
 fn every_level_gives_the_same_bits() {
-    let model = GrowthModel::straight(&tree(), super::settings(2.0)).unwrap();
+    let model = GrowthModel::straight(&tree(), super::settings(2.0), None).unwrap();
     let points = scattered(999, DVec3::splat(-300.0), DVec3::new(300.0, 300.0, 2500.0));
     let points: Vec<[f64; 3]> = points.iter().map(DVec3::to_array).collect();
     let program = Program::compile(&[field(&model)]);

@@ -2,8 +2,17 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 mod model;
+mod outputs;
 mod statistics;
 mod weather;
+mod wood;
+
+#[path = "../support/levels.rs"]
+mod levels;
+
+#[path = "../support/workshop.rs"]
+#[allow(dead_code, reason = "rings need not all of it")]
+mod workshop;
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -115,11 +124,4 @@ const SITE: &str = "tests/data/weather/vslite_site3.csv";
 
 fn site() -> Arc<Climate> {
     read(project_file(SITE), &[]).unwrap()
-}
-
-/// The widths of the rings in mm.
-fn widths(series: &RingSeries) -> Vec<f64> {
-    let mut before = 0.0;
-    let width = |radius: f64| radius - std::mem::replace(&mut before, radius);
-    series.radii().map(width).collect()
 }

@@ -133,7 +133,7 @@ fn the_great_droughts_of_oxford_are_among_its_narrowest_rings() {
     for (species, seed) in [(None, 0), (None, 99)] {
         let given: Vec<(&str, Value)> = species.into_iter().collect();
         let rings = grown(&oxford(), seed, &given).unwrap();
-        let widths = widths(&rings);
+        let widths = rings.widths();
         let mut years: Vec<i32> = (1900..=2020).collect();
         years.sort_by(|a, b| widths[(a - 1853) as usize].total_cmp(&widths[(b - 1853) as usize]));
         println!("narrowest rings {:?}", &years[..12]);
@@ -168,7 +168,7 @@ fn rings_of_a_measured_site_follow_the_measured_index() {
         .map(|row| row.rsplit(',').next().unwrap().parse().unwrap())
         .collect();
     let follow = |given: &[(&str, Value)]| {
-        correlation(&widths(&grown(&site(), 0, given).unwrap()), &measured)
+        correlation(&grown(&site(), 0, given).unwrap().widths(), &measured)
     };
     let stated = [
         ("temperature", Value::Pair([8.0, 10.0])),
@@ -193,7 +193,7 @@ fn rings_have_the_mean_width_that_is_asked_for() {
             ("to", Value::Whole(2000)),
         ];
         let rings = grown(&oxford(), 0, &given).unwrap();
-        let widths = widths(&rings);
+        let widths = rings.widths();
         assert_eq!((rings.first_year, rings.years()), (1901, 100));
         assert!((widths.iter().sum::<f64>() - 170.0).abs() < 1e-9);
         let [first, last] = [&widths[..10], &widths[90..]].map(|ten| ten.iter().sum::<f64>());
@@ -260,8 +260,8 @@ fn light_and_growth_turn_with_the_hemisphere() {
     turned.latitude = -oxford.latitude;
     turned.months.rotate_right(6);
     let given = [("sunshine", Value::Toggle(false))];
-    let north = widths(&grown(&oxford, 0, &given).unwrap());
-    let south = widths(&grown(&Arc::new(turned), 0, &given).unwrap());
+    let north = grown(&oxford, 0, &given).unwrap().widths();
+    let south = grown(&Arc::new(turned), 0, &given).unwrap().widths();
     assert_eq!(south.len(), north.len() - 1);
     let follow = correlation(&north[5..167], &south[5..167]);
     assert!(follow > 0.97, "{follow}");
@@ -364,7 +364,7 @@ fn hard_places_give_sound_rings_or_say_why_not() {
         .iter_mut()
         .for_each(|month| month.temperature = -20.0);
     let rings = grown(&Arc::new(lean), 0, &[("reserve", Value::Number(0.0))]).unwrap();
-    let widths = widths(&rings);
+    let widths = rings.widths();
     assert!(
         rings.is_sound() && widths[4] > 0.0 && widths[4] < 0.03 * widths[3],
         "{widths:?}"

@@ -8,7 +8,7 @@ use yosegi::nodes::rings::growth_model::statistics::{
 
 /// Mean sensitivity, and autocorrelation after the 33-year mean is taken away.
 fn measured(series: &RingSeries) -> [f64; 2] {
-    let widths = widths(series);
+    let widths = series.widths();
     [
         mean_sensitivity(&widths),
         autocorrelation(&detrended(&widths)),

@@ -159,7 +159,7 @@ fn months_that_lack_something_get_the_mean_of_their_calendar_month() {
     assert_eq!(
         warned(text.clone(), ""),
         [
-            "1 values are estimates in the file; they are taken as they are",
+            "taken as they are: 1 estimated value",
             "the year 1990 is not complete and is left out"
         ]
     );
@@ -177,7 +177,7 @@ fn months_that_lack_something_get_the_mean_of_their_calendar_month() {
         sunshine: None,
     };
     assert_eq!(july, expected);
-    let filled = "1 months have no temperature and get the mean of their calendar month of 1989 to 1991: 1990-07";
+    let filled = "the mean of the calendar month of 1989 to 1991 stands for 1 month without temperature: 1990-07";
     assert!(warned(text, "").iter().any(|it| it == filled));
 }
 
@@ -201,9 +201,10 @@ fn long_gaps_are_refused_with_what_to_do() {
     assert_eq!(filled.years(), 168);
     let warnings = warned(gappy, "longest_gap: 48");
     assert!(
-        warnings.iter().any(
-            |it| it.starts_with("48 months have no rain") && it.ends_with("1940-01 to 1943-12")
-        ),
+        warnings
+            .iter()
+            .any(|it| it.contains("stands for 48 months without rain")
+                && it.ends_with("1940-01 to 1943-12")),
         "{warnings:?}"
     );
 }

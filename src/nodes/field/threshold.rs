@@ -75,6 +75,12 @@ pub(in crate::nodes) fn transition(build: &Build<'_>, value: Field, width: f64) 
     build.kernel(kernel, vec![value])
 }
 
+/// 1 where a value is below an edge and 0 above it, averaged over each pixel.
+pub(in crate::nodes) fn below(build: &Build<'_>, value: Field, edge: f64) -> Field {
+    let left = build.kernel(Difference, vec![Field::constant(edge), value]);
+    transition(build, left, 0.0)
+}
+
 /// The step at 0 with a transition of `width` around it.
 fn above(width: f64, smooth: bool) -> Profile<1> {
     let flat = |start: f64, value: f64| Piece {

@@ -2,5 +2,6 @@
 
 pub mod maps;
 mod normal;
+pub mod ring_table;
 
 pub(crate) use normal::normal_from_height;

@@ -97,6 +97,15 @@ pub(in crate::nodes) fn default_of(channel: &str, width: usize) -> Field {
     Field::constants(&vec![number; width])
 }
 
+/// Channels, with the defaults of the standard ones that are not among them.
+pub(in crate::nodes) fn with_defaults(
+    channels: impl IntoIterator<Item = (String, Field)>,
+) -> BTreeMap<String, Field> {
+    let width = |name: &str| if name == "base_color" { 3 } else { 1 };
+    let defaults = STANDARD_CHANNELS.map(|name| (name.to_owned(), default_of(name, width(name))));
+    defaults.into_iter().chain(channels).collect()
+}
+
 fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let standard = STANDARD_CHANNELS.map(|name| (name.to_owned(), inputs.field(name)));
     let mut channels = BTreeMap::from(standard);

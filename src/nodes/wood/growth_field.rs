@@ -22,30 +22,39 @@
 //! axis and across it; without one, f = 1 (own construction). The fade divides the branch's time. As
 //! a factor of `T_i^-k` it would act all at once at the end of the reach, the more so the larger k.
 //!
+//! A ring series says instead of the speeds how thick and tall the trunk was at the end of each year (Shibasaki & Aoyama).
+//! With S_n the area of its section at the ground and m the time at which it was as tall as z, ring n reaches at that
+//! height to
+//!
+//! ```text
+//! d = sqrt((S_n - S_m) / pi)
+//! ```
+//!
+//! from the trunk's curve, times within a year being linear in area and in height; beyond the last ring and above the
+//! tip they go on as in the last year. `T_alpha` is then the time at which the tree was as tall as the branch's start;
+//! branches keep a speed of elongation.
+//!
+//! The bark is where T is the tree's age: `inside` is 1 below it, averaged over each pixel.
+//!
 //! A branch given by its half width w at the distance L along it has its border there, `T_2 = T_1`:
 //! `v_b = w sqrt(L^2 + w^2) / (L (T_1 - z(b1) / v_e - L / v_e))`, with T_1 of the axis' point at L.
 
 use super::growth::{GrowthKernel, GrowthModel, GrowthSettings, Reach};
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
-use crate::value::{Domain, Type, Unit, Value};
+use crate::nodes::field::threshold::below;
+use crate::value::{Domain, RingSeries, Type, Unit, Value};
+use std::sync::Arc;
 
 /// Growth time along a curved skeleton.
 pub static KIND: Kind = Kind {
     name: "growth_field",
     version: 1,
-    about: "When the wood at each point grew, along a curved trunk and its branches.",
-    source: "Momoi & Takatera 2014, eqs. (9)-(18); exponent, reach and share are our own construction",
+    about: "When the wood at each point grew, along a curved trunk and its branches, by speeds or by the rings of a tree.",
+    source: "Momoi & Takatera 2014, eqs. (9)-(18); Shibasaki & Aoyama, eqs. (1), (2) (rings); exponent, reach and share are \
+             our own construction",
     inputs: INPUTS,
-    outputs: &[
-        Output::field("time", Type::Number(Unit::Year), "Growth time.").on(Domain::Solid),
-        Output::field(
-            "branch",
-            Type::Number(Unit::One),
-            "0 in the trunk's wood, near 1 in a knot.",
-        )
-        .on(Domain::Solid),
-    ],
+    outputs: &[TIME, BRANCH, INSIDE],
     example: "(nodes: {
         \"tree\": skeleton(
             trunk: [(0, 0, 0), (12, 4, 900), (-6, 9, 2100)],
@@ -59,18 +68,33 @@ pub static KIND: Kind = Kind {
 /// What grows, and how; `straight_growth_field` has the same inputs.
 pub(super) const INPUTS: &[Input] = &[
     Input::new("skeleton", Type::Skeleton, "Trunk and branches."),
+    Input::new(
+        "rings",
+        Type::RingSeries,
+        "How thick and tall the trunk was in each year, instead of `thickening`.",
+    )
+    .optional(),
     Input::number(
         "elongation",
         Unit::MillimetrePerYear,
-        "How fast trunk and branches grow long.",
+        "How fast trunk and branches grow long; with `rings` only branches, else as fast as the tree on average.",
     )
+    .optional()
     .range(1.0, 1e5),
     Input::number(
         "thickening",
         Unit::MillimetrePerYear,
-        "How fast the trunk's radius grows.",
+        "How fast the trunk's radius grows; needed unless there are `rings`.",
     )
+    .optional()
     .range(1e-3, 1e4),
+    Input::number(
+        "age",
+        Unit::Year,
+        "Age of the tree, where its bark is; else that of its `rings`, or there is no bark.",
+    )
+    .optional()
+    .range(0.0, 1e5),
     Input::number(
         "sharpness",
         Unit::One,
@@ -87,30 +111,87 @@ pub(super) const INPUTS: &[Input] = &[
     .range(1e-3, 1e6),
 ];
 
+/// The outputs, which `straight_growth_field` has as well.
+pub(super) const TIME: Output =
+    Output::field("time", Type::Number(Unit::Year), "Growth time.").on(Domain::Solid);
+pub(super) const BRANCH: Output = Output::field(
+    "branch",
+    Type::Number(Unit::One),
+    "0 in the trunk's wood, near 1 in a knot.",
+)
+.on(Domain::Solid);
+pub(super) const INSIDE: Output = Output::field(
+    "inside",
+    Type::Number(Unit::One),
+    "1 within the bark and 0 outside; 1 everywhere if the tree has no age.",
+)
+.on(Domain::Solid);
+
 fn build(inputs: &Inputs<'_>, context: &Build<'_>) -> Result<Vec<Value>, Failure> {
-    let model = GrowthModel::new(inputs.skeleton("skeleton"), settings(inputs))?;
-    Ok(times(context, model))
+    let (settings, rings) = settings(inputs)?;
+    let model = GrowthModel::with_rings(inputs.skeleton("skeleton"), settings, rings)?;
+    Ok(outputs(inputs, context, model))
 }
 
 /// How a tree grows, as the inputs say.
-pub(super) fn settings(inputs: &Inputs<'_>) -> GrowthSettings {
+pub(super) fn settings(
+    inputs: &Inputs<'_>,
+) -> Result<(GrowthSettings, Option<Arc<RingSeries>>), Failure> {
     let reach = inputs.get("reach").map(|_| {
         let [along, across] = inputs.pair("reach");
         Reach { along, across }
     });
-    GrowthSettings {
-        elongation: inputs.number("elongation"),
-        thickening: inputs.number("thickening"),
+    let rings = inputs.get("rings").map(|_| inputs.ring_series("rings"));
+    let [elongation, thickening] = speeds(inputs, rings.map(|rings| &**rings))?;
+    let settings = GrowthSettings {
+        elongation,
+        thickening,
         sharpness: inputs.number("sharpness"),
         reach,
-    }
+    };
+    Ok((settings, rings.cloned()))
 }
 
-/// The outputs `time` and `branch` of a model.
-pub(super) fn times(context: &Build<'_>, model: GrowthModel) -> Vec<Value> {
+/// Growth time, share of the branches and what is inside the bark.
+pub(super) fn outputs(inputs: &Inputs<'_>, context: &Build<'_>, model: GrowthModel) -> Vec<Value> {
+    let age = match inputs.get("age") {
+        Some(_) => Some(inputs.number("age")),
+        None => model.rings.as_ref().map(|rings| rings.years() as f64),
+    };
     let position = Field::position(Domain::Solid);
     let growth = context.kernel(GrowthKernel::new(model), vec![position]);
-    [0, 1]
-        .map(|column| Value::Field(growth.part(column, 1)))
-        .to_vec()
+    let inside = match age {
+        Some(age) => below(context, growth.part(0, 1), age),
+        None => Field::constant(1.0),
+    };
+    vec![
+        Value::Field(growth.part(0, 1)),
+        Value::Field(growth.part(1, 1)),
+        Value::Field(inside),
+    ]
+}
+
+/// How fast branches, and trunks without rings, grow long and thick.
+fn speeds(inputs: &Inputs<'_>, rings: Option<&RingSeries>) -> Result<[f64; 2], Failure> {
+    let speed = |name: &str| inputs.get(name).map(|_| inputs.number(name));
+    let (elongation, thickening) = (speed("elongation"), speed("thickening"));
+    let Some(rings) = rings else {
+        let stated = |name: &'static str, speed: Option<f64>| {
+            let message = format!("neither `rings` nor `{name}` is set");
+            let hint = "set `elongation` and `thickening`, or link `rings` to a `growth_model`";
+            speed.ok_or_else(|| Failure::new(message).with_hint(hint))
+        };
+        return Ok([
+            stated("elongation", elongation)?,
+            stated("thickening", thickening)?,
+        ]);
+    };
+    if thickening.is_some() {
+        let message = "`thickening` is set, but the `rings` say how thick the trunk was";
+        return Err(Failure::of_input("thickening", message).with_hint("remove one of them"));
+    }
+    let years = rings.years() as f64;
+    let height = rings.heights[rings.years() - 1];
+    // The trunk's own speed does not count.
+    Ok([elongation.unwrap_or(height / years), 1.0])
 }

@@ -9,13 +9,14 @@
 //!
 //! The two segments at the nearest node count: in the influence area of one of them the foot is on its line,
 //! in the blend area inside a bend both times are blended, outside a bend the foot is the node (see
-//! `growth::straight`). Branches act on T_1 as in `growth_field`.
+//! `growth::straight`). Branches act on T_1, and rings of a tree take the place of speeds, as in `growth_field`; there the
+//! tip's height is D_a.
 //!
 //! The model has two defects, which are kept as published: T jumps far from the axis, on the plane that halves a
 //! segment where it crosses a blend area; and near the axis rings are polygons. `growth_field` has neither.
 
 use super::growth::{GrowthModel, RegionKernel};
-use super::growth_field::{INPUTS, settings, times};
+use super::growth_field::{BRANCH, INPUTS, INSIDE, TIME, outputs, settings};
 use crate::field::Field;
 use crate::node::{Build, Failure, Inputs, Kind, Output};
 use crate::value::{Domain, Type, Unit, Value};
@@ -28,13 +29,9 @@ pub static KIND: Kind = Kind {
     source: "Momoi & Takatera 2014, section 2, eqs. (1)-(3), (14)-(18); the blend function is our own construction",
     inputs: INPUTS,
     outputs: &[
-        Output::field("time", Type::Number(Unit::Year), "Growth time.").on(Domain::Solid),
-        Output::field(
-            "branch",
-            Type::Number(Unit::One),
-            "0 in the trunk's wood, near 1 in a knot.",
-        )
-        .on(Domain::Solid),
+        TIME,
+        BRANCH,
+        INSIDE,
         Output::field(
             "region",
             Type::Number(Unit::One),
@@ -59,13 +56,14 @@ pub static KIND: Kind = Kind {
 };
 
 fn build(inputs: &Inputs<'_>, context: &Build<'_>) -> Result<Vec<Value>, Failure> {
-    let model = GrowthModel::straight(inputs.skeleton("skeleton"), settings(inputs))?;
+    let (settings, rings) = settings(inputs)?;
+    let model = GrowthModel::straight(inputs.skeleton("skeleton"), settings, rings)?;
     let trunk = model.trunk.straight().expect("the model was made straight");
     let regions = context.kernel(
         RegionKernel::new(trunk),
         vec![Field::position(Domain::Solid)],
     );
-    let mut values = times(context, model);
+    let mut values = outputs(inputs, context, model);
     values.extend([0, 1].map(|column| Value::Field(regions.part(column, 1))));
     Ok(values)
 }

@@ -31,10 +31,11 @@ use super::energy::{
     Axis, Burl, BurlSettings, EnergyKernel, EnergyModel, Reference, Wave, bark_radius, branch_rods,
     random_burls, swelling_charge,
 };
-use super::ring_time::{Inside, RingTime};
+use super::ring_time::RingTime;
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::field::combine::Join;
+use crate::nodes::field::threshold::below;
 use crate::nodes::random::Random;
 use crate::value::{Domain, RingSeries, Type, Unit, Value};
 
@@ -198,7 +199,7 @@ fn build(inputs: &Inputs<'_>, context: &Build<'_>) -> Result<Vec<Value>, Failure
         vec![radius.clone(), wave, position.clone()],
     );
     let age = rings.years() as f64;
-    let inside = context.kernel(Inside { age }, vec![time.clone()]);
+    let inside = below(context, time.clone(), age);
     let place = context.kernel(Join, vec![energy.part(5, 2), position.part(2, 1)]);
     let fields = [time, branch, burl, inside, radius, whole, place];
     Ok(fields.map(Value::Field).to_vec())

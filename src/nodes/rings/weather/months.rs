@@ -18,6 +18,9 @@ pub(super) struct Reading {
     pub(super) rain: Option<f64>,
     /// Hours of sunshine.
     pub(super) sunshine: Option<f64>,
+    /// How many of the values are estimates.
+    pub(super) estimates: usize,
+    pub(super) is_provisional: bool,
 }
 
 /// All that a file says.
@@ -26,9 +29,6 @@ pub(super) struct Record {
     /// Latitude in degrees, if the file states it.
     pub(super) latitude: Option<f64>,
     readings: Vec<Reading>,
-    /// How many values are estimates, and how many rows are provisional.
-    pub(super) estimates: usize,
-    pub(super) provisional: usize,
 }
 
 impl Record {
@@ -103,7 +103,7 @@ pub(super) fn climate(
     warnings: &mut Vec<String>,
 ) -> Result<Climate, Failure> {
     let latitude = latitude(choice.latitude, record.latitude, warnings)?;
-    tell_estimates(&record, warnings);
+    tell_estimates(&record, choice, warnings);
     let years = Years::new(record.readings).map_err(super::of_file)?;
     let mut years = years.window(choice)?.whole(warnings)?;
     years.refuse_gaps(choice.longest_gap)?;
@@ -131,17 +131,28 @@ fn latitude(
     })
 }
 
-fn tell_estimates(record: &Record, warnings: &mut Vec<String>) {
-    let mut told = vec![];
-    if record.estimates > 0 {
-        told.push(format!("{} values are estimates", record.estimates));
-    }
-    if record.provisional > 0 {
-        told.push(format!("{} months are provisional", record.provisional));
-    }
+/// A number of things, for messages.
+fn counted(count: usize, thing: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {thing}{plural}")
+}
+
+fn tell_estimates(record: &Record, choice: &Choice, warnings: &mut Vec<String>) {
+    let years = choice.from.unwrap_or(i32::MIN)..=choice.to.unwrap_or(i32::MAX);
+    let chosen = || record.readings.iter().filter(|it| years.contains(&it.year));
+    let estimates: usize = chosen().map(|reading| reading.estimates).sum();
+    let provisional = chosen().filter(|reading| reading.is_provisional).count();
+    let told = [
+        counted(estimates, "estimated value"),
+        counted(provisional, "provisional month"),
+    ];
+    let told: Vec<String> = told
+        .into_iter()
+        .filter(|it| !it.starts_with("0 "))
+        .collect();
     if !told.is_empty() {
         let told = told.join(" and ");
-        warnings.push(format!("{told} in the file; they are taken as they are"));
+        warnings.push(format!("taken as they are: {told}"));
     }
 }
 
@@ -305,10 +316,10 @@ impl Years {
             ""
         };
         warnings.push(format!(
-            "{} months have no {name} and get the mean of their calendar month of {} to {}: {}{more}",
-            missing.len(),
+            "the mean of the calendar month of {} to {} stands for {} without {name}: {}{more}",
             years.0,
             years.1,
+            counted(missing.len(), "month"),
             first.join(", ")
         ));
         for index in missing {

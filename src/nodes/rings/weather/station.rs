@@ -102,8 +102,6 @@ impl Row<'_> {
         }
         let [(high, a), (low, b)] = [self.cell("tmax")?, self.cell("tmin")?];
         let [(rain, c), (sunshine, d)] = [self.cell("rain")?, self.cell("sun")?];
-        record.estimates += [a, b, c, d].into_iter().filter(|it| *it).count();
-        record.provisional += usize::from(!more.is_empty());
         let reading = Reading {
             line: self.line,
             year: self.date(0, "a year from 1 to 9999", year)?,
@@ -111,6 +109,8 @@ impl Row<'_> {
             temperature: super::months::middle(self.line, low, high)?,
             rain,
             sunshine,
+            estimates: [a, b, c, d].into_iter().filter(|it| *it).count(),
+            is_provisional: !more.is_empty(),
         };
         record.add(reading)
     }

@@ -106,6 +106,8 @@ fn read_months(columns: &Columns<'_>, record: &mut Record) -> Result<(), Fault> 
             temperature: columns.temperature_of(row, temperature)?,
             rain: columns.value(row, rain)?,
             sunshine: sun.map_or(Ok(None), |column| columns.value(row, column))?,
+            estimates: 0,
+            is_provisional: false,
         };
         record.add(reading)?;
     }
@@ -130,6 +132,8 @@ fn read_years(
                 temperature: columns.value(row, temperature[month])?,
                 rain: columns.value(row, rain[month])?,
                 sunshine: sun.map_or(Ok(None), |sun| columns.value(row, sun[month]))?,
+                estimates: 0,
+                is_provisional: false,
             };
             record.add(reading)?;
         }

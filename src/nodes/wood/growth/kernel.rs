@@ -5,6 +5,7 @@
 //! depend neither on its neighbours nor on where blocks begin.
 
 use super::branches::{self, BranchConstants, ScaledSums};
+use super::clock::Clock;
 use super::line::TrunkLine;
 use super::near::{Bounds, NearBranches};
 use super::power::Power;
@@ -21,7 +22,7 @@ use glam::Vec3;
 use std::fmt;
 
 /// Samples in a run: they stay in the fastest cache, and few branches are near all of them.
-pub(super) const RUN: usize = 128;
+pub(in crate::nodes::wood) const RUN: usize = 128;
 
 /// From the position (x, y, z) in mm to T in years and the share of the branches in it.
 pub struct GrowthKernel {
@@ -63,6 +64,7 @@ impl Kernel for GrowthKernel {
             trunk,
             branches,
             settings,
+            rings,
         } = &self.model;
         let (name, version) = match trunk {
             TrunkLine::Curved(_) => ("growth", growth_field::KIND.version),
@@ -103,6 +105,11 @@ impl Kernel for GrowthKernel {
             numbers(&branch.start.to_array());
             numbers(&branch.direction.to_array());
             numbers(&[branch.start_time, branch.thickening]);
+        }
+        if let Some(rings) = rings {
+            numbers(&rings.areas);
+            numbers(&rings.heights);
+            key.text("rings").whole(rings.years() as i64);
         }
     }
 
@@ -174,17 +181,17 @@ impl TrunkColumns {
     fn new(model: &GrowthModel) -> TrunkColumns {
         match &model.trunk {
             TrunkLine::Curved(curve) => {
-                TrunkColumns::Curved(TrunkTable::new(curve, &model.settings))
+                TrunkColumns::Curved(TrunkTable::new(curve, Clock::new(model)))
             }
             TrunkLine::Straight(trunk) => {
-                TrunkColumns::Straight(StraightTimes::new(trunk, &model.settings))
+                TrunkColumns::Straight(StraightTimes::new(trunk, Clock::new(model)))
             }
         }
     }
 
     fn nanoseconds(&self) -> f32 {
         match self {
-            TrunkColumns::Curved(_) => 5.0,
+            TrunkColumns::Curved(table) => table.nanoseconds(),
             TrunkColumns::Straight(times) => times.nanoseconds(),
         }
     }

@@ -4,8 +4,9 @@ use super::line::TrunkLine;
 use super::straight::{StraightTrunk, Way};
 use crate::geometry::spline::TrunkCurve;
 use crate::node::Failure;
-use crate::value::{Skeleton, Thickness};
+use crate::value::{RingSeries, Skeleton, Thickness};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// The fastest thickening of a branch in mm/year.
 const FASTEST: f64 = 1e5;
@@ -13,9 +14,9 @@ const FASTEST: f64 = 1e5;
 /// How a tree grows along its skeleton.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowthSettings {
-    /// Speed v_e in mm/year at which trunk and branches grow longer.
+    /// Speed v_e in mm/year at which branches grow longer, and the trunk unless its rings are known.
     pub elongation: f64,
-    /// Speed v_h in mm/year at which the trunk grows thicker.
+    /// Speed v_h in mm/year at which the trunk grows thicker, unless its rings are known.
     pub thickening: f64,
     /// Exponent k of the blend between trunk and branches; 2 is eq. (18).
     pub sharpness: f64,
@@ -54,6 +55,8 @@ pub struct GrowthModel {
     pub branches: Vec<GrowingBranch>,
     /// How it grows.
     pub settings: GrowthSettings,
+    /// How tall and thick the trunk was in each year, instead of its speeds.
+    pub rings: Option<Arc<RingSeries>>,
 }
 
 /// The parts of the time at which growth along a branch reached a point, in years.
@@ -104,45 +107,61 @@ pub fn growth_time(
 }
 
 impl GrowthModel {
-    /// A tree with a curved trunk; finds how fast each branch thickens.
+    /// A tree with a curved trunk that grows by speeds; finds how fast each branch thickens.
     ///
     /// # Errors
     /// Nodes that make no curve, a branch that starts beyond the ends of the trunk, a direction of length
     /// 0, a thickness that is not positive or cannot be reached.
     pub fn new(skeleton: &Skeleton, settings: GrowthSettings) -> Result<GrowthModel, Failure> {
-        let curve = TrunkCurve::through(&skeleton.trunk, skeleton.tangents)
-            .map_err(|error| Failure::of_input("skeleton", format!("trunk: {error}")))?;
-        GrowthModel::along(TrunkLine::Curved(curve), skeleton, settings)
+        GrowthModel::with_rings(skeleton, settings, None)
     }
 
-    /// A tree with a trunk of straight segments; finds how fast each branch thickens.
+    /// As [`GrowthModel::new`], with a trunk that grows by a ring series if there is one: at the height z, ring n
+    /// reaches to `sqrt((S_n - S_m) / pi)` from its curve, m being the time at which the tree was as tall as z.
     ///
     /// # Errors
     /// As [`GrowthModel::new`].
-    pub fn straight(skeleton: &Skeleton, settings: GrowthSettings) -> Result<GrowthModel, Failure> {
-        // The curve is not used, but a trunk that it cannot follow is none.
-        TrunkCurve::through(&skeleton.trunk, skeleton.tangents)
-            .map_err(|error| Failure::of_input("skeleton", format!("trunk: {error}")))?;
-        let trunk = StraightTrunk::through(&skeleton.trunk);
-        GrowthModel::along(TrunkLine::Straight(trunk), skeleton, settings)
+    pub fn with_rings(
+        skeleton: &Skeleton,
+        settings: GrowthSettings,
+        rings: Option<Arc<RingSeries>>,
+    ) -> Result<GrowthModel, Failure> {
+        let trunk = TrunkLine::Curved(curve(skeleton)?);
+        GrowthModel::along(trunk, skeleton, settings, rings)
+    }
+
+    /// As [`GrowthModel::with_rings`], with a trunk of straight segments.
+    ///
+    /// # Errors
+    /// As [`GrowthModel::new`]: a trunk that no curve can follow is none.
+    pub fn straight(
+        skeleton: &Skeleton,
+        settings: GrowthSettings,
+        rings: Option<Arc<RingSeries>>,
+    ) -> Result<GrowthModel, Failure> {
+        curve(skeleton)?;
+        let trunk = TrunkLine::Straight(StraightTrunk::through(&skeleton.trunk));
+        GrowthModel::along(trunk, skeleton, settings, rings)
     }
 
     fn along(
         trunk: TrunkLine,
         skeleton: &Skeleton,
         settings: GrowthSettings,
+        rings: Option<Arc<RingSeries>>,
     ) -> Result<GrowthModel, Failure> {
         let mut model = GrowthModel {
             trunk,
             branches: vec![],
             settings,
+            rings,
         };
         for (index, branch) in skeleton.branches.iter().enumerate() {
             let start = model.trunk.at(branch.height);
             let mut growing = GrowingBranch {
                 start,
                 direction: branch.direction.normalize_or_zero(),
-                start_time: model.trunk.way_to(branch.height) / settings.elongation,
+                start_time: model.tip_time(model.trunk.way_to(branch.height)),
                 thickening: 0.0,
             };
             let thickening = model
@@ -172,9 +191,20 @@ impl GrowthModel {
         }
     }
 
-    /// How many years growth took along the trunk and from there to the bark.
+    /// When the trunk's tip had come this way in mm, in years.
+    fn tip_time(&self, way: f64) -> f64 {
+        match &self.rings {
+            Some(rings) => rings.time_of_height(way),
+            None => way / self.settings.elongation,
+        }
+    }
+
+    /// How many years growth took along the trunk and from there to a point.
     fn time_of(&self, way: Way) -> f64 {
-        way.along / self.settings.elongation + way.across / self.settings.thickening
+        match &self.rings {
+            Some(rings) => rings.time_at(way.across, way.along),
+            None => self.tip_time(way.along) + way.across / self.settings.thickening,
+        }
     }
 
     /// When the wood at `point` (mm) grew, with all terms.
@@ -267,6 +297,12 @@ impl GrowthModel {
             ))
         }
     }
+}
+
+/// The curve through a skeleton's trunk.
+fn curve(skeleton: &Skeleton) -> Result<TrunkCurve, Failure> {
+    TrunkCurve::through(&skeleton.trunk, skeleton.tangents)
+        .map_err(|error| Failure::of_input("skeleton", format!("trunk: {error}")))
 }
 
 /// T and the share of the branches in it, from T_1 and (T_i, f_i) of every branch.

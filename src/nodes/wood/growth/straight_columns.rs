@@ -1,7 +1,8 @@
 //! The straight skeleton for columns of positions: all nodes are compared, as the older model does.
 
+use super::RUN;
+use super::clock::Clock;
 use super::straight::StraightTrunk;
-use super::{GrowthSettings, RUN};
 use crate::field::{Block, Kernel, Sampling};
 use crate::key::KeyHasher;
 use fearless_simd::dispatch;
@@ -29,21 +30,19 @@ struct NodeConstants {
 #[derive(Debug)]
 pub(super) struct StraightTimes {
     table: StraightTable,
-    years_along: f32,
-    years_across: f32,
+    clock: Clock,
 }
 
 impl StraightTimes {
-    pub(super) fn new(trunk: &StraightTrunk, settings: &GrowthSettings) -> StraightTimes {
+    pub(super) fn new(trunk: &StraightTrunk, clock: Clock) -> StraightTimes {
         StraightTimes {
             table: StraightTable::new(trunk),
-            years_along: (1.0 / settings.elongation) as f32,
-            years_across: (1.0 / settings.thickening) as f32,
+            clock,
         }
     }
 
     pub(super) fn nanoseconds(&self) -> f32 {
-        8.0 + 0.5 * self.table.nodes.len() as f32
+        8.0 + 0.2 * self.table.nodes.len() as f32 + 2.0 * self.clock.nanoseconds()
     }
 
     /// Writes T_1 in years, eqs. (1)-(3), blended where two segments count.
@@ -53,13 +52,14 @@ impl StraightTimes {
         let mut seen = SeenColumns::of(&mut columns, times.len());
         self.table.see(simd, position, &mut seen);
         let lanes = S::f32s::LEN;
+        for way in 0..2 {
+            self.clock
+                .write_times(simd, seen.along[way], seen.across[way]);
+        }
         for start in (0..times.len()).step_by(lanes) {
             let range = start..start + lanes;
             let load = |column: &[f32]| S::f32s::from_slice(simd, &column[range.clone()]);
-            let [first, second] = [0, 1].map(|way| {
-                load(seen.along[way]) * self.years_along
-                    + load(seen.across[way]) * self.years_across
-            });
+            let [first, second] = [0, 1].map(|way| load(seen.across[way]));
             let share = load(seen.share);
             (first * share + second * (-share + 1.0)).store_slice(&mut times[range.clone()]);
         }
@@ -119,7 +119,7 @@ impl Kernel for RegionKernel {
 pub(super) struct SeenColumns<'a> {
     /// Lengths of the ways along the skeleton, by the segments below and above the nearest node.
     pub(super) along: [&'a mut [f32]; 2],
-    /// Distances from there.
+    /// Squares of the distances from there.
     pub(super) across: [&'a mut [f32]; 2],
     /// Share of the first way.
     pub(super) share: &'a mut [f32],
@@ -229,11 +229,11 @@ impl StraightTable {
         let [by_first, by_second] = [is_below.select(-below, zero), is_above.select(above, zero)];
         let first = [
             path + by_first,
-            distance::<S>(from_node, directions[0], by_first),
+            square::<S>(from_node, directions[0], by_first),
         ];
         let second = [
             path + by_second,
-            distance::<S>(from_node, directions[1], by_second),
+            square::<S>(from_node, directions[1], by_second),
         ];
         let is_blend = is_below & is_above;
         let sum = below + above;
@@ -286,9 +286,9 @@ fn dot<S: Simd>(a: [S::f32s; 3], b: [S::f32s; 3]) -> S::f32s {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Distance from the point that lies `along` from the node in a direction.
+/// Square of the distance from the point that lies `along` from the node in a direction.
 #[inline(always)]
-fn distance<S: Simd>(from_node: [S::f32s; 3], direction: [S::f32s; 3], along: S::f32s) -> S::f32s {
+fn square<S: Simd>(from_node: [S::f32s; 3], direction: [S::f32s; 3], along: S::f32s) -> S::f32s {
     let off: [S::f32s; 3] = std::array::from_fn(|axis| from_node[axis] - direction[axis] * along);
-    dot::<S>(off, off).sqrt()
+    dot::<S>(off, off)
 }

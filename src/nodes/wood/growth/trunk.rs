@@ -1,6 +1,6 @@
 //! Growth time by the trunk alone, for columns of positions.
 
-use super::GrowthSettings;
+use super::clock::Clock;
 use super::heights::Heights;
 use crate::field::transposed;
 use crate::geometry::spline::{Piece, TrunkCurve};
@@ -17,8 +17,7 @@ const MOST_AT_ONCE: usize = 4;
 pub(super) struct TrunkTable {
     heights: Heights,
     pieces: Vec<PieceConstants>,
-    years_along: f32,
-    years_across: f32,
+    clock: Clock,
 }
 
 /// `(x, y) = c0 + h (c1 + h (c2 + h c3))` with `h = z - start`.
@@ -30,7 +29,11 @@ struct PieceConstants {
 }
 
 impl TrunkTable {
-    pub(super) fn new(curve: &TrunkCurve, settings: &GrowthSettings) -> TrunkTable {
+    pub(super) fn nanoseconds(&self) -> f32 {
+        5.0 + self.clock.nanoseconds()
+    }
+
+    pub(super) fn new(curve: &TrunkCurve, clock: Clock) -> TrunkTable {
         let nodes: Vec<f32> = curve.nodes().iter().map(|node| node.z as f32).collect();
         let starts = std::iter::once(&nodes[0]).chain(&nodes);
         let pieces = curve.pieces();
@@ -41,8 +44,7 @@ impl TrunkTable {
                 .zip(starts)
                 .map(|(p, z)| PieceConstants::new(p, *z))
                 .collect(),
-            years_along: (1.0 / settings.elongation) as f32,
-            years_across: (1.0 / settings.thickening) as f32,
+            clock,
         }
     }
 }
@@ -59,7 +61,7 @@ impl PieceConstants {
     }
 }
 
-/// Writes T_1 in years, eqs. (9)-(13).
+/// Writes T_1 in years, eqs. (9)-(13) or by rings.
 #[simd]
 pub(super) fn trunk_times<S: Simd>(
     simd: S,
@@ -69,15 +71,7 @@ pub(super) fn trunk_times<S: Simd>(
 ) {
     // In two passes: what one lane at a time has stored cannot be loaded as a vector at once.
     squares_across(simd, table, position, times);
-    let lanes = S::f32s::LEN;
-    for (z, times) in position[2]
-        .chunks_exact(lanes)
-        .zip(times.chunks_exact_mut(lanes))
-    {
-        let across = S::f32s::from_slice(simd, times).sqrt();
-        let along = S::f32s::from_slice(simd, z);
-        (along * table.years_along + across * table.years_across).store_slice(times);
-    }
+    table.clock.write_times(simd, position[2], times);
 }
 
 /// Writes the squares of the distances from the curve.
