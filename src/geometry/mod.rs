@@ -2,5 +2,7 @@
 
 mod box_tree;
 pub(crate) mod mesh;
+pub(crate) mod nurbs;
+pub(crate) mod patch_grid;
 pub mod spline;
 mod tangents;

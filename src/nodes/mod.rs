@@ -1,10 +1,13 @@
 //! The kinds of nodes, in families: one file each, and one line each in the table below.
 
+mod cells;
 pub mod cut;
 pub mod field;
 pub mod noise;
 pub mod output;
 mod picture;
+mod random;
+pub mod rings;
 pub mod shape;
 pub mod surface;
 pub mod wood;
@@ -16,11 +19,18 @@ pub static KINDS: &[&Kind] = &[
     &wood::skeleton::KIND,
     &wood::skeleton_from_file::KIND,
     &wood::growth_field::KIND,
+    &wood::straight_growth_field::KIND,
+    &rings::ring_series::KIND,
+    &wood::virtual_energy::KIND,
     &surface::material::KIND,
     &shape::mesh_from_file::KIND,
+    &shape::patches_from_file::KIND,
+    &shape::nurbs_surface::KIND,
+    &shape::mesh_from_patches::KIND,
     &cut::slice_cut::KIND,
     &cut::rotary_cut::KIND,
     &cut::mesh_cut::KIND,
+    &cut::patch_cut::KIND,
     &output::maps::KIND,
     &surface::mix::KIND,
     &wood::colour_pattern::KIND,
@@ -42,6 +52,8 @@ pub static KINDS: &[&Kind] = &[
     &field::transform_field::KIND,
     &field::image_from_file::KIND,
     &surface::blend::KIND,
+    &rings::weather::KIND,
+    &rings::growth_model::KIND,
 ];
 
 /// The kind called `name`.

@@ -33,6 +33,7 @@ impl Workshop {
             "measured_tree/tree.csv",
             "spot/spot.obj",
             "teapot/teapot.txt",
+            "weather/oxforddata.txt",
         ] {
             files.insert(Path::new(folder).join(asset), asset_bytes(asset));
         }

@@ -1,6 +1,6 @@
 //! OBJ: points, places, normals and faces by index, in groups, objects and materials.
 
-use super::scan::{self, Line, shown};
+use super::super::scan::{self, Line, shown};
 use crate::diagnostics::nearest;
 use crate::geometry::mesh::{Corners, Soup};
 use crate::node::{Build, Failure, Inputs};
