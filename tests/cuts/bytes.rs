@@ -42,7 +42,7 @@ fn bytes_depend_on_the_recipe_alone() {
         ..Options::default()
     };
     let expected = rendered(options(2, 64));
-    assert_eq!(expected.len(), 10);
+    assert_eq!(expected.len(), 9);
     for (threads, tile) in [(1, 16), (3, 31), (2, 1024)] {
         assert_eq!(
             rendered(options(threads, tile)),

@@ -163,8 +163,8 @@ impl Kernel for Beyond {
 #[test]
 fn seams_survive_smaller_pictures() {
     let spot = std::fs::read("assets/spot/spot.obj").unwrap();
-    for (mesh, levels) in [
-        (read("it.obj", SQUARES, &PLAIN).unwrap(), 5),
+    for (mesh, pixels, levels) in [
+        (read("it.obj", SQUARES, &PLAIN).unwrap(), 512, 5),
         (
             read(
                 "spot.obj",
@@ -175,6 +175,7 @@ fn seams_survive_smaller_pictures() {
                 },
             )
             .unwrap(),
+            1024,
             2,
         ),
     ] {
@@ -183,18 +184,19 @@ fn seams_survive_smaller_pictures() {
             piece.charts()[0].clone(),
             piece.channels["coverage"].clone(),
         ];
-        let mut side = 512usize;
-        let mut columns = painted(&fields, piece.charts(), &piece, 512, 128);
+        let mut side = pixels;
+        let mut columns = painted(&fields, piece.charts(), &piece, pixels as u32, 128);
         let shown: Vec<f32> = columns[0].clone();
         let coverage = columns[1].clone();
         for level in 1..=levels {
             columns[0] = halved(&columns[0], side);
             side /= 2;
-            let block = 512 / side;
+            let block = pixels / side;
             let mut looked_at = 0;
             for texel in 0..side * side {
                 let (x, y) = (texel % side * block, texel / side * block);
-                let inside = (0..block * block).map(|it| (y + it / block) * 512 + x + it % block);
+                let inside =
+                    (0..block * block).map(|it| (y + it / block) * pixels + x + it % block);
                 let mut charts: Vec<f32> = inside
                     .filter(|it| coverage[*it] > 0.0)
                     .map(|it| shown[it])

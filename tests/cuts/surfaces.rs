@@ -241,10 +241,11 @@ fn a_mesh_of_patches_has_their_map_and_their_outside() {
     // Both spread the same area: the mesh over what its triangles cover of the square.
     assert!((sizes[0] / sizes[1] - 1.0).abs() < 0.01, "{sizes:?}");
     for step in 0..400 {
-        let at = [
-            f64::from(step * 37 % 401) / 401.0,
-            f64::from(step * 91 % 401) / 401.0,
-        ];
+        // Not at the very tips, where the triangles of a mesh leave out what has no area.
+        let inside =
+            DVec2::new(f64::from(step * 37 % 401), f64::from(step * 91 % 401)) / 500.0 + 0.1;
+        let corner = DVec2::new(f64::from(step % 32 % 6), f64::from(step % 32 / 6));
+        let at = ((corner + 0.02 + 0.96 * inside) / 6.0).to_array();
         let [a, b] = [&from_mesh, &from_patches].map(|piece| {
             let side = piece.size.unwrap()[0];
             places(piece, &[[at[0] * side, at[1] * side, 0.0]])[0]

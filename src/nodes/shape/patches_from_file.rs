@@ -136,7 +136,6 @@ impl<'a> Numbers<'a> {
                     self.line
                 )));
             };
-            self.line = line.number;
             let words = line
                 .text
                 .split(|letter: char| letter == ',' || letter.is_whitespace());
@@ -145,6 +144,9 @@ impl<'a> Numbers<'a> {
                 .filter(|word| !word.is_empty())
                 .map(str::to_owned)
                 .collect();
+            if !self.words.is_empty() {
+                self.line = line.number;
+            }
         }
         let word = self.words.pop().unwrap_or_default();
         let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
