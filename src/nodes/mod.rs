@@ -10,6 +10,7 @@ mod random;
 pub mod rings;
 pub mod shape;
 pub mod surface;
+pub mod view;
 pub mod wood;
 
 use crate::node::Kind;
@@ -54,6 +55,9 @@ pub static KINDS: &[&Kind] = &[
     &surface::blend::KIND,
     &rings::weather::KIND,
     &rings::growth_model::KIND,
+    &shape::block::KIND,
+    &shape::log::KIND,
+    &view::view::KIND,
 ];
 
 /// The kind called `name`.

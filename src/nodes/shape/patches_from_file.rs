@@ -126,7 +126,7 @@ impl<'a> Numbers<'a> {
     /// The next finite number.
     fn next(&mut self, what: &str) -> Result<f64, Failure> {
         self.taken += 1;
-        if self.taken % AT_ONCE == 0 {
+        if self.taken.is_multiple_of(AT_ONCE) {
             self.build.go_on()?;
         }
         while self.words.is_empty() {

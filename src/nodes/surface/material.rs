@@ -88,7 +88,7 @@ pub const STANDARD_CHANNELS: [&str; 6] = [
 
 /// What a channel of `width` columns is where a material does not have it: the default of the input, 0 or black for
 /// extras.
-pub(super) fn default_of(channel: &str, width: usize) -> Field {
+pub(in crate::nodes) fn default_of(channel: &str, width: usize) -> Field {
     let declared = match KIND.input(channel).map(|(_, input)| input.presence) {
         Some(Presence::Default(literal)) => literal.parse().ok(),
         _ => None,

@@ -32,22 +32,24 @@ const IRELAND: Grid = Grid {
 /// The latitude in degrees of a line in lower case that holds a reference such as `450900e 207200n` or `4509e 2072n`.
 pub(super) fn latitude(line: &str) -> Option<f64> {
     let mut words = line.split([' ', '\t', ',', ':', ';', '(', ')']);
-    let easting = words.find_map(|word| metres(word, 'e'))?;
-    let northing = words.find_map(|word| metres(word, 'n'))?;
+    let easting = words.find_map(|word| digits(word, 'e'))?;
+    let northing = words.find_map(|word| digits(word, 'n'))?;
+    // No easting of these islands is below 10 km, so four digits are hundreds of metres.
+    let unit = if easting.len() == 4 { 100.0 } else { 1.0 };
+    let metres = |digits: &str| digits.parse::<f64>().ok().map(|number| number * unit);
     let grid = if line.contains("irish") {
         IRELAND
     } else {
         BRITAIN
     };
-    Some(grid.latitude_of(easting, northing))
+    Some(grid.latitude_of(metres(easting)?, metres(northing)?))
 }
 
-/// Four to seven digits and a letter: metres, or hundreds of metres where there are at most five.
-fn metres(word: &str, letter: char) -> Option<f64> {
+/// Four to seven digits before a letter.
+fn digits(word: &str, letter: char) -> Option<&str> {
     let digits = word.strip_suffix(letter)?;
-    let plain = (4..=7).contains(&digits.len()) && digits.bytes().all(|byte| byte.is_ascii_digit());
-    let number: f64 = plain.then(|| digits.parse().ok())??;
-    Some(number * if digits.len() <= 5 { 100.0 } else { 1.0 })
+    let plain = digits.bytes().all(|byte| byte.is_ascii_digit());
+    (plain && (4..=7).contains(&digits.len())).then_some(digits)
 }
 
 impl Grid {

@@ -150,7 +150,7 @@ impl Reader<'_> {
             .collect();
         let flat = flattened(&points);
         let mut indices: Vec<u32> = vec![];
-        self.earcut.earcut(flat.into_iter(), &[], &mut indices);
+        self.earcut.earcut(flat, &[], &mut indices);
         indices
             .chunks_exact(3)
             .map(|it| [it[0], it[1], it[2]])
