@@ -138,6 +138,26 @@ fn means_are_of_one_chart() {
     assert!(mixed.iter().any(|value| *value > 0.0 && *value < 1.0));
 }
 
+/// The whole part of a number.
+#[derive(Debug)]
+struct Whole;
+
+impl Kernel for Whole {
+    fn add_to_key(&self, key: &mut KeyHasher) {
+        key.text("whole part of a test");
+    }
+
+    fn width(&self) -> usize {
+        1
+    }
+
+    fn evaluate(&self, block: &mut Block<'_>) {
+        for (output, value) in block.outputs[0].iter_mut().zip(block.inputs[0].values) {
+            *output = value.floor();
+        }
+    }
+}
+
 /// 1 where a number is above 30.
 #[derive(Debug)]
 struct Beyond;
@@ -181,7 +201,7 @@ fn seams_survive_smaller_pictures() {
     ] {
         let piece = on_mesh(&mesh, &[]).unwrap();
         let fields = [
-            piece.charts()[0].clone(),
+            kernel(Whole, &piece.charts()[0]),
             piece.channels["coverage"].clone(),
         ];
         let mut side = pixels;
@@ -267,4 +287,63 @@ fn pieces_made_of_pieces_keep_their_charts() {
     };
     assert_eq!(moved.charts().len(), 1);
     assert_ne!(key(moved.surface.as_ref().unwrap()), own);
+}
+
+/// At every pixel of a patch, those at its border included, the spread is what the surface's tangents say.
+#[test]
+fn spreads_are_true_up_to_the_border() {
+    let piece = on_patches(&teapot(0.0));
+    let place = piece.channels["place"].clone();
+    let tangents = piece.surface.as_ref().unwrap().tangents.clone().unwrap();
+    let spreads = [0, 1, 2].map(|axis| kernel(Spread, &place.part(axis, 1)));
+    let fields: Vec<Field> = spreads.into_iter().chain([tangents]).collect();
+    let pixels = 6 * 64;
+    let columns = painted(&fields, piece.charts(), &piece, pixels, 96);
+    let pixel = piece.size.unwrap()[0] / f64::from(pixels);
+    // Of the last row of squares two are patches.
+    let shown =
+        (4 * 64 * pixels..6 * 64 * pixels).filter(|it| it / pixels >= 64 || it % pixels < 128);
+    for at in shown.map(|it| it as usize) {
+        for axis in 0..3 {
+            let (row, column) = (columns[2 * axis][at], columns[2 * axis + 1][at]);
+            let [u, v] = [6 + axis, 9 + axis].map(|it| columns[it][at] * pixel as f32);
+            // v runs up, rows run down; one-sided differences lag half a pixel behind.
+            assert!(
+                (row - u).abs() < 0.004 && (column + v).abs() < 0.004,
+                "{at}: {row} {u}, {column} {v}"
+            );
+        }
+    }
+}
+
+/// A texel outside the bark is transparent: the solid says so.
+#[test]
+fn opacity_is_that_of_the_solid() {
+    let Value::Material(solid) = where_one_is() else {
+        unreachable!()
+    };
+    let mut solid = (*solid).clone();
+    let opacity = kernel(Beyond, &solid.channels["place"].part(0, 1));
+    solid.channels.insert("opacity".to_owned(), opacity);
+    let mesh = read("it.obj", SQUARES, &PLAIN).unwrap();
+    let given = [
+        ("mesh", Value::Mesh(mesh)),
+        ("of", Value::Material(Arc::new(solid))),
+    ];
+    let piece = match built(&yosegi::nodes::cut::mesh_cut::KIND, &given)
+        .unwrap()
+        .remove(0)
+    {
+        Value::Material(piece) => piece,
+        other => panic!("found a {}", other.type_name()),
+    };
+    let opacity = painted(
+        &[piece.channels["opacity"].clone()],
+        piece.charts(),
+        &piece,
+        40,
+        40,
+    )
+    .remove(0);
+    assert_eq!((opacity[20 * 40 + 8], opacity[20 * 40 + 32]), (0.0, 1.0));
 }

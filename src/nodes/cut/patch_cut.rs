@@ -35,10 +35,13 @@ pub static KIND: Kind = Kind {
     )
     .on(Domain::Plane)],
     example: r##"(nodes: {
-        "rings": solid_noise(size: (6, 6, 80)),
+        "rings": solid_noise(size: (25, 25, 200)),
         "wood": material(base_color: "#c8a06e", height: "= 0.1 * rings"),
-        "teapot": patches_from_file(file: "teapot/teapot.txt", unit: inch),
-        "example": patch_cut(of: "wood", patches: "teapot", placed: (move: (0, 0, 300))),
+        "shell": nurbs_surface(degrees: (2, 1), gutter: 0, points: [
+            [(200, 0, 0), (200, 200, 0), (0, 200, 0)],
+            [(200, 0, 300), (200, 200, 300), (0, 200, 300)],
+        ], weights: [[1, 1, 2], [1, 1, 2]]),
+        "example": patch_cut(of: "wood", patches: "shell", placed: (move: (0, 0, 300))),
     })"##,
     build,
 };
