@@ -73,7 +73,7 @@ impl Program {
     }
 
     /// As [`Program::compile`], of a piece on which samples are neighbours only if all of `charts` have the same
-    /// values at both: spreads and means do not reach from one chart into another.
+    /// values at both: spreads do not reach from one to the other, nor do means unless they differ in fractions only.
     pub fn compile_in_charts(fields: &[Field], charts: &[Field]) -> Program {
         let program = Compiler::new(true, charts).compile(fields, None);
         program.expect("nobody cancels it")

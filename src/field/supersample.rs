@@ -58,8 +58,8 @@ pub(super) fn supersample(
                     false => {
                         let is_of_chart = |sample: usize| {
                             charts.iter().all(|(inside, slot)| {
-                                inside[index * area + sample]
-                                    == scratch.column(*slot)[*pixel as usize]
+                                inside[index * area + sample].floor()
+                                    == scratch.column(*slot)[*pixel as usize].floor()
                             })
                         };
                         mean_of_chart(values, within.margin(), is_of_chart)

@@ -4,5 +4,7 @@ mod box_tree;
 pub(crate) mod hierarchy;
 pub(crate) mod level_surface;
 pub(crate) mod mesh;
+pub(crate) mod nurbs;
+pub(crate) mod patch_grid;
 pub mod spline;
 mod tangents;

@@ -28,8 +28,9 @@ pub struct Surface {
     /// How the surface runs at each point of the piece: the change of its place along u and along v, in mm for each mm of
     /// the piece, six columns. `None` if it is not known.
     pub tangents: Option<Field>,
-    /// Fields that have the same values only within a chart: points with different ones are no neighbours, however near
-    /// they lie on the piece.
+    /// Fields that are the same only within a chart: points with different values are no neighbours, however near they lie
+    /// on the piece. The whole part says which chart it is; a fraction marks parts of one chart, over which differences
+    /// do not reach either, but a pixel may be the mean of both.
     pub charts: Vec<Field>,
 }
 

@@ -4,6 +4,7 @@ mod climate;
 mod colour_pattern;
 mod material;
 mod mesh;
+mod patches;
 mod ring_series;
 mod skeleton;
 mod table;
@@ -13,6 +14,8 @@ pub use climate::{Climate, Month};
 pub use colour_pattern::{AfterEnd, ColourPattern};
 pub use material::{FileType, MapFormat, Maps, Material, SampleType, Surface};
 pub use mesh::{Mesh, Triangle};
+pub(crate) use patches::HIGHEST_DEGREE;
+pub use patches::{Patch, Patches};
 pub use ring_series::RingSeries;
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
 pub use table::Table;
@@ -83,6 +86,8 @@ pub enum Value {
     RingSeries(Arc<RingSeries>),
     /// Triangles in space.
     Mesh(Arc<Mesh>),
+    /// Curved surfaces in space.
+    Patches(Arc<Patches>),
     /// A bundle of fields.
     Material(Arc<Material>),
     /// Maps to be written.
@@ -140,6 +145,7 @@ impl Value {
             | Value::Climate(_)
             | Value::RingSeries(_)
             | Value::Mesh(_)
+            | Value::Patches(_)
             | Value::Material(_)
             | Value::Maps(_)
             | Value::Table(_) => key,
@@ -194,6 +200,7 @@ impl Value {
             Value::Climate(_) => "climate",
             Value::RingSeries(_) => "ring series",
             Value::Mesh(_) => "mesh",
+            Value::Patches(_) => "patches",
             Value::Material(_) => "material",
             Value::Maps(_) => "maps",
             Value::Table(_) => "table",

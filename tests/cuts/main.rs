@@ -2,10 +2,19 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
+mod bytes;
+mod charts;
 mod meshes;
 mod odd_files;
 mod placed;
 mod rotary;
+mod surfaces;
+
+#[path = "../support/levels.rs"]
+mod levels;
+#[path = "../support/workshop.rs"]
+#[allow(dead_code, reason = "cuts need no log of events")]
+mod workshop;
 
 use fearless_simd::Level;
 use glam::DVec3;

@@ -36,7 +36,7 @@ pub static KIND: Kind = Kind {
     )
     .on(Domain::Plane)],
     example: r##"(nodes: {
-        "rings": solid_noise(size: (6, 6, 80)),
+        "rings": solid_noise(size: (25, 25, 200)),
         "wood": material(base_color: "#c8a06e", height: "= 0.1 * rings"),
         "cow": mesh_from_file(file: "spot/spot.obj", unit: cm, up: y),
         "example": mesh_cut(of: "wood", mesh: "cow", placed: (scale: (10, 10, 10), move: (0, 0, 300))),

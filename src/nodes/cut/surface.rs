@@ -94,13 +94,10 @@ impl Kernel for Spots {
         for index in 0..block.inputs[0].values.len() {
             let spot = self.0.spot(at(block, index));
             let [x, y, z] = spot.place.to_array().map(|part| part as f32);
-            let columns = [
-                x,
-                y,
-                z,
-                spot.chart as f32,
-                f32::from(u8::from(spot.is_covered)),
-            ];
+            let covered = f32::from(u8::from(spot.is_covered));
+            // What is beside the surface is another part of the chart.
+            let chart = spot.chart as f32 + 0.5 * (1.0 - covered);
+            let columns = [x, y, z, chart, covered];
             for (output, value) in block.outputs.iter_mut().zip(columns) {
                 output[index] = value;
             }

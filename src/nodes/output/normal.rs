@@ -92,3 +92,86 @@ fn on_surface(tangents: &[InputColumn<'_>], index: usize, [rise_u, rise_v]: [f32
     let slope_v = (f64::from(rise_v) - slope_u * slanted) / across;
     [slope_u as f32, slope_v as f32]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::FlatPiece;
+    use crate::field::{PixelGrid, Program, RunContext, Samples, Scratch};
+    use crate::value::Surface;
+    use fearless_simd::Level;
+    use std::collections::BTreeMap;
+
+    /// 0.3 u + 0.6 v.
+    #[derive(Debug)]
+    struct Slope;
+
+    impl Kernel for Slope {
+        fn add_to_key(&self, key: &mut KeyHasher) {
+            key.text("slope of a test");
+        }
+
+        fn width(&self) -> usize {
+            1
+        }
+
+        fn evaluate(&self, block: &mut Block<'_>) {
+            for (index, output) in block.outputs[0].iter_mut().enumerate() {
+                *output = 0.3 * block.inputs[0].values[index] + 0.6 * block.inputs[1].values[index];
+            }
+        }
+    }
+
+    fn normal(tangents: Option<[f64; 6]>) -> [f32; 3] {
+        let node: Arc<str> = "test".into();
+        let height = Field::kernel(&node, Arc::new(Slope), vec![Field::position(Domain::Plane)]);
+        let material = Material {
+            domain: Domain::Plane,
+            channels: BTreeMap::from([("height".to_owned(), height)]),
+            size: Some([8.0, 8.0]),
+            surface: Some(Surface {
+                tangents: tangents.map(|tangents| Field::constants(&tangents)),
+                charts: vec![],
+            }),
+        };
+        let program = Program::compile(&[normal_from_height(&node, &material)]);
+        let target = FlatPiece::new([16, 16], [8.0, 8.0]);
+        let samples = Samples::Grid {
+            target: &target,
+            grid: PixelGrid::tile([4, 4], [1, 1], program.margin()),
+        };
+        let context = RunContext {
+            level: Level::baseline(),
+            cache: None,
+            filtering: true,
+            cancel: None,
+        };
+        let mut scratch = Scratch::default();
+        program.run(&samples, &mut scratch, &context);
+        let middle = samples.len() / 2;
+        [0, 1, 2].map(|column| program.output(&scratch, 0, column)[middle])
+    }
+
+    fn is_near(found: [f32; 3], slopes: [f32; 2]) {
+        let length = (slopes[0] * slopes[0] + slopes[1] * slopes[1] + 1.0).sqrt();
+        let expected = [-slopes[0] / length, -slopes[1] / length, 1.0 / length];
+        let apart = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
+        assert!(
+            apart.fold(0.0, f32::max) < 1e-5,
+            "{found:?}, not {expected:?}"
+        );
+    }
+
+    #[test]
+    fn slopes_are_those_in_the_surface() {
+        is_near(normal(None), [0.3, 0.6]);
+        is_near(normal(Some([1.0, 0.0, 0.0, 0.0, 1.0, 0.0])), [0.3, 0.6]);
+        // P = (2 u + v, 3 v), so h = 0.15 x + 0.15 y.
+        is_near(normal(Some([2.0, 0.0, 0.0, 1.0, 3.0, 0.0])), [0.15, 0.15]);
+        // The same, upright in space and seen from behind: tangent and bitangent follow u and v.
+        is_near(normal(Some([0.0, 0.0, -2.0, 0.0, 3.0, -1.0])), [0.15, 0.15]);
+        // Where the surface has no area nothing slopes.
+        is_near(normal(Some([1.0, 0.0, 0.0, 2.0, 0.0, 0.0])), [0.0, 0.0]);
+        is_near(normal(Some([0.0; 6])), [0.0, 0.0]);
+    }
+}

@@ -10,13 +10,12 @@
 //! square at one scale.
 
 mod obj;
-mod scan;
 mod stl;
 
+use super::scan::{self, UNIT, UP, refuse};
 use crate::geometry::mesh::{self, Finish, Soup};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Type, Unit, Value};
-use glam::DVec3;
 use std::sync::Arc;
 
 /// Triangles in space from a file.
@@ -31,18 +30,8 @@ pub static KIND: Kind = Kind {
             Type::File,
             "An STL file, text or binary, or an OBJ file.",
         ),
-        Input::new(
-            "unit",
-            Type::Choice(&["mm", "cm", "m", "inch"]),
-            "Unit of the lengths in the file.",
-        )
-        .default("mm"),
-        Input::new(
-            "up",
-            Type::Choice(&["z", "y"]),
-            "Which axis of the file points up; here it is z.",
-        )
-        .default("z"),
+        UNIT,
+        UP,
         Input::new(
             "parts",
             Type::List(&Type::Text),
@@ -76,16 +65,14 @@ pub static KIND: Kind = Kind {
     build,
 };
 
-/// Largest coordinate in mm.
-const LARGEST: f64 = 1e9;
-
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let bytes = &inputs.file("file").bytes;
     let mut soup = match is_obj(inputs) {
         true => obj::read(bytes, &parts(inputs), inputs, build)?,
         false => stl::read(bytes, inputs, build)?,
     };
-    place(&mut soup, inputs)?;
+    scan::place(inputs, &mut soup.points)?;
+    scan::turn_upright(inputs, &mut soup.normals);
     warn_of_places(&soup, inputs);
     let finish = Finish {
         keeps_normals: inputs.choice("normals") == "file",
@@ -100,11 +87,6 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         inputs.warn(format!("{left_out} triangles without an area are left out"));
     }
     Ok(vec![Value::Mesh(Arc::new(mesh))])
-}
-
-/// What is wrong with the file.
-fn refuse(message: impl Into<String>) -> Failure {
-    Failure::of_input("file", message)
 }
 
 /// Whether the file is an OBJ: by its name, else by its first words.
@@ -125,30 +107,6 @@ fn parts(inputs: &Inputs<'_>) -> Vec<String> {
         _ => None,
     };
     items.filter_map(text).collect()
-}
-
-/// Turns the points into mm with z up.
-fn place(soup: &mut Soup, inputs: &Inputs<'_>) -> Result<(), Failure> {
-    let unit = match inputs.choice("unit") {
-        "cm" => 10.0,
-        "m" => 1000.0,
-        "inch" => 25.4,
-        _ => 1.0,
-    };
-    let upright = |it: &mut DVec3| *it = DVec3::new(it.x, -it.z, it.y);
-    if inputs.choice("up") == "y" {
-        soup.points.iter_mut().for_each(upright);
-        soup.normals.iter_mut().for_each(upright);
-    }
-    soup.points.iter_mut().for_each(|point| *point *= unit);
-    let too_far = |point: &&DVec3| point.abs().max_element() > LARGEST;
-    match soup.points.iter().find(too_far) {
-        None => Ok(()),
-        Some(point) => {
-            let message = format!("a point is at {point} mm; the farthest is {LARGEST} mm off");
-            Err(refuse(message).with_hint("check `unit`"))
-        }
-    }
 }
 
 /// Warns of places that are not used.

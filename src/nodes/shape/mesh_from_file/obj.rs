@@ -1,6 +1,6 @@
 //! OBJ: points, places, normals and faces by index, in groups, objects and materials.
 
-use super::scan::{self, Line, shown};
+use super::super::scan::{self, Line, shown};
 use crate::diagnostics::nearest;
 use crate::geometry::mesh::{Corners, Soup};
 use crate::node::{Build, Failure, Inputs};
@@ -150,7 +150,7 @@ impl Reader<'_> {
             .collect();
         let flat = flattened(&points);
         let mut indices: Vec<u32> = vec![];
-        self.earcut.earcut(flat.into_iter(), &[], &mut indices);
+        self.earcut.earcut(flat, &[], &mut indices);
         indices
             .chunks_exact(3)
             .map(|it| [it[0], it[1], it[2]])

@@ -1,7 +1,6 @@
 //! STL: triangles as text or as 50 bytes each. Normals are those of the corners' order, since files often state none.
 
-use super::refuse;
-use super::scan::{self, shown};
+use super::super::scan::{self, refuse, shown};
 use crate::geometry::mesh::{Corners, Soup};
 use crate::node::{Build, Failure, Inputs};
 use glam::DVec3;

@@ -1,7 +1,68 @@
-//! Lines and words of text formats, with their places for messages.
+//! What readers of shapes have in common: lines and words with their places for messages, units and axes.
 
-use super::refuse;
-use crate::node::Failure;
+use crate::node::{Failure, Input, Inputs};
+use crate::value::Type;
+use glam::DVec3;
+
+/// What is wrong with the file.
+pub(super) fn refuse(message: impl Into<String>) -> Failure {
+    Failure::of_input("file", message)
+}
+
+/// How many mm a length in the file is.
+pub(super) fn millimetres(inputs: &Inputs<'_>) -> f64 {
+    match inputs.choice("unit") {
+        "cm" => 10.0,
+        "m" => 1000.0,
+        "inch" => 25.4,
+        _ => 1.0,
+    }
+}
+
+/// Turns points of the file, so that z points up.
+pub(super) fn turn_upright(inputs: &Inputs<'_>, points: &mut [DVec3]) {
+    if inputs.choice("up") == "y" {
+        let upright = |it: &mut DVec3| *it = DVec3::new(it.x, -it.z, it.y);
+        points.iter_mut().for_each(upright);
+    }
+}
+
+/// Turns points of the file into mm with z up.
+///
+/// # Errors
+/// Points that are too far off.
+pub(super) fn place(inputs: &Inputs<'_>, points: &mut [DVec3]) -> Result<(), Failure> {
+    turn_upright(inputs, points);
+    let unit = millimetres(inputs);
+    points.iter_mut().for_each(|point| *point *= unit);
+    let too_far = |point: &&DVec3| point.abs().max_element() > LARGEST;
+    match points.iter().find(too_far) {
+        None => Ok(()),
+        Some(point) => {
+            let message = format!("a point is at {point} mm; the farthest is {LARGEST} mm off");
+            Err(refuse(message).with_hint("check `unit`"))
+        }
+    }
+}
+
+/// Largest coordinate in mm.
+const LARGEST: f64 = 1e9;
+
+/// The unit of the lengths in a file.
+pub(super) const UNIT: Input = Input::new(
+    "unit",
+    Type::Choice(&["mm", "cm", "m", "inch"]),
+    "Unit of the lengths in the file.",
+)
+.default("mm");
+
+/// Which way is up in a file.
+pub(super) const UP: Input = Input::new(
+    "up",
+    Type::Choice(&["z", "y"]),
+    "Which axis of the file points up; here it is z.",
+)
+.default("z");
 
 /// One line of a file, without its remark; continued lines are one.
 pub(super) struct Line {
@@ -38,7 +99,8 @@ impl Line {
         Ok(numbers)
     }
 
-    fn number(&self, word: &str) -> Result<f64, Failure> {
+    /// A finite number.
+    pub(super) fn number(&self, word: &str) -> Result<f64, Failure> {
         let number = word.parse::<f64>().ok().filter(|it| it.is_finite());
         number
             .ok_or_else(|| self.refuse(format!("expected a finite number, found {}", shown(word))))
