@@ -70,6 +70,29 @@ const WITHIN: usize = 256;
 /// The angle between neighbours on a spiral of even density, 2 pi over the square of the golden ratio.
 const GOLDEN: f64 = 2.399_963_229_728_653;
 
+/// Points of the unit disc at which a light is asked for.
+#[derive(Clone, Debug)]
+pub(super) struct Disc {
+    rim: Vec<[f64; 2]>,
+    within: Vec<[f64; 2]>,
+}
+
+impl Disc {
+    /// The rim in even steps, and a spiral of even density within.
+    pub(super) fn new() -> Disc {
+        let point = |angle: f64, radius: f64| [radius * libm::cos(angle), radius * libm::sin(angle)];
+        let rim = |index: usize| point(index as f64 * (2.0 * PI / RIM as f64), 1.0);
+        let within = |index: usize| {
+            let radius = ((index as f64 + 0.5) / WITHIN as f64).sqrt();
+            point(index as f64 * GOLDEN, radius)
+        };
+        Disc {
+            rim: (0..RIM).map(rim).collect(),
+            within: (0..WITHIN).map(within).collect(),
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 enum Place {
     /// The direction towards it, and the tangent of half of its width.
@@ -164,10 +187,10 @@ impl Light {
     }
 
     /// Which part of the light a point sees, from 0 to 1.
-    pub(super) fn visibility(&self, scene: &Scene, point: &Point) -> f64 {
+    pub(super) fn visibility(&self, scene: &Scene, disc: &Disc, point: &Point) -> f64 {
         let seen = self.seen(point.place);
-        let facing = point.normal.dot(seen.direction);
-        if facing <= -seen.width {
+        if point.normal.dot(seen.direction) <= 0.0 {
+            // It lights nothing here.
             return 0.0;
         }
         let furthest = self.distance(point.place);
@@ -178,18 +201,11 @@ impl Light {
             // What is below the surface's own horizon is hidden by it.
             point.face.dot(direction) > 0.0 && !scene.is_hidden(point, direction, furthest)
         };
-        if seen.width == 0.0 {
-            return f64::from(u8::from(is_clear([0.0; 2])));
+        let middle = is_clear([0.0; 2]);
+        if seen.width == 0.0 || disc.rim.iter().all(|place| is_clear(*place) == middle) {
+            return f64::from(u8::from(middle));
         }
-        let rim = (0..RIM).filter(|index| is_clear(on_spiral(*index, 1.0))).count();
-        if rim == 0 || rim == RIM {
-            let middle = is_clear([0.0; 2]);
-            if middle == (rim == RIM) {
-                return if middle { 1.0 } else { 0.0 };
-            }
-        }
-        let radius = |index: usize| ((index as f64 + 0.5) / WITHIN as f64).sqrt();
-        let clear = (0..WITHIN).filter(|index| is_clear(on_spiral(*index, radius(*index))));
+        let clear = disc.within.iter().filter(|place| is_clear(**place));
         clear.count() as f64 / WITHIN as f64
     }
 
@@ -203,15 +219,6 @@ impl Light {
             key.number(part);
         });
     }
-}
-
-/// A point of the unit disc: the rim in even steps, and a spiral of even density within.
-fn on_spiral(index: usize, radius: f64) -> [f64; 2] {
-    let angle = match radius {
-        1.0 => index as f64 * (2.0 * PI / RIM as f64),
-        _ => index as f64 * GOLDEN,
-    };
-    [radius * libm::cos(angle), radius * libm::sin(angle)]
 }
 
 /// Two directions at right angles to one another and to a third (Duff and others 2017).

@@ -6,7 +6,7 @@
 //! brighter towards white.
 
 use super::camera::{CAMERA, Camera};
-use super::light::{LIGHT, Light, SKY, Sky};
+use super::light::{Disc, LIGHT, Light, SKY, Sky};
 use super::picture::{Smooth, Tone};
 use super::rays::{Illumination, Sight, Stage, seen};
 use super::record::Record;
@@ -209,6 +209,7 @@ fn stage(inputs: &Inputs<'_>, size: [f64; 2]) -> Result<Stage, Failure> {
         },
         camera,
         lights,
+        disc: Disc::new(),
     })
 }
 
