@@ -4,7 +4,7 @@
 //! that are sampled within a pixel need to know where, but not how it is lit there.
 
 use super::camera::Camera;
-use super::light::{Disc, Light, Sky};
+use super::light::{Disc, Light, Sky, Turn};
 use super::scene::{Point, Scene};
 use crate::field::{Block, Kernel};
 use crate::geometry::hierarchy::Ray;
@@ -133,11 +133,12 @@ impl Kernel for Illumination {
                 row[lit::OPENNESS] = NOWHERE;
                 return;
             };
-            let light = sky.light(Some(scene), &point);
+            let turn = Turn::at(u, v);
+            let light = sky.light(Some(scene), &point, &turn);
             row[lit::OPENNESS] = light.openness;
             row[lit::SKY..][..3].copy_from_slice(&light.colour);
             for (row, light) in row[lit::LIGHTS..].iter_mut().zip(lights) {
-                *row = light.visibility(scene, disc, &point);
+                *row = light.visibility(scene, disc, &point, &turn);
             }
         });
     }

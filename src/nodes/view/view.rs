@@ -6,7 +6,7 @@
 //! brighter towards white.
 
 use super::camera::{CAMERA, Camera};
-use super::light::{Disc, LIGHT, Light, SKY, Sky};
+use super::light::{Disc, LIGHT, Light, SKY, Sky, Turn};
 use super::picture::{Smooth, Tone};
 use super::rays::{Illumination, Sight, Stage, seen};
 use super::record::Record;
@@ -149,7 +149,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         has_bark: bark.is_some(),
         has_relief,
         background: inputs.colour("background").map(|part| part as f32),
-        open_sky: stage.sky.light(None, &straight_up).colour.map(|part| part as f32),
+        open_sky: stage.sky.light(None, &straight_up, &Turn::at(0.0, 0.0)).colour.map(|part| part as f32),
         stage,
         exposure: inputs.number("exposure") as f32,
     };
