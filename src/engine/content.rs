@@ -28,7 +28,7 @@ pub(super) fn key(value: &Value) -> Key {
             maps.size.iter().for_each(|length| {
                 key.number(*length);
             });
-            key.text(maps.format.name());
+            key.text(maps.format.name()).whole(i64::from(maps.is_view));
             for (channel, range) in &maps.ranges {
                 key.text(channel).number(range[0]).number(range[1]);
             }
@@ -49,6 +49,9 @@ fn add_material(key: &mut KeyHasher, material: &Material) {
     material.size.iter().flatten().for_each(|length| {
         key.number(*length);
     });
+    if let Some(surface) = &material.surface {
+        surface.add_to_key(key);
+    }
 }
 
 /// The bytes of a structure; empty for values that are not structures.

@@ -103,13 +103,13 @@ impl Output<'_> {
             None => &maps.channels[0],
         };
         let (field, kind) = self.field(maps, channel);
-        let program = Program::compile(&[field]);
+        let program = Program::compile_in_charts(&[field], maps.material.charts());
         self.check_program(&program)?;
         let full = self.pixels(maps);
         let mut side = COARSEST;
         loop {
             let start = Instant::now();
-            let target = FlatPiece::new(scaled(full, side), maps.size);
+            let target = FlatPiece::of(maps, scaled(full, side));
             self.write_preview(maps, &target, &program, (channel, kind))?;
             let is_whole = side >= FINEST.min(full[0].max(full[1]));
             if is_whole || Instant::now() + GROWTH * start.elapsed() > end {

@@ -283,7 +283,7 @@ impl Output<'_> {
         let start = Instant::now();
         let maps = self.maps(built);
         let pixels = self.pixels(maps);
-        let target = FlatPiece::new(pixels, maps.size);
+        let target = FlatPiece::of(maps, pixels);
         let wanted = self.wanted_maps(maps, &target);
         let is_there = |map: &WantedMap| told.contains(&&*map.channel) || self.found(map);
         let missing: Vec<&WantedMap> = wanted.iter().filter(|map| !is_there(map)).collect();

@@ -1,6 +1,8 @@
-//! Geometry in double precision: curves and triangles that structures and kernels are built from.
+//! Geometry in double precision: curves and meshes that structures and kernels are built from.
 
+mod box_tree;
 pub(crate) mod hierarchy;
 pub(crate) mod level_surface;
+pub(crate) mod mesh;
 pub mod spline;
 mod tangents;

@@ -1,10 +1,13 @@
 //! The kinds of nodes, in families: one file each, and one line each in the table below.
 
+mod cells;
 pub mod cut;
 pub mod field;
 pub mod noise;
 pub mod output;
 mod picture;
+mod random;
+pub mod rings;
 pub mod shape;
 pub mod surface;
 pub mod view;
@@ -17,8 +20,14 @@ pub static KINDS: &[&Kind] = &[
     &wood::skeleton::KIND,
     &wood::skeleton_from_file::KIND,
     &wood::growth_field::KIND,
+    &wood::straight_growth_field::KIND,
+    &rings::ring_series::KIND,
+    &wood::virtual_energy::KIND,
     &surface::material::KIND,
+    &shape::mesh_from_file::KIND,
     &cut::slice_cut::KIND,
+    &cut::rotary_cut::KIND,
+    &cut::mesh_cut::KIND,
     &output::maps::KIND,
     &surface::mix::KIND,
     &wood::colour_pattern::KIND,
@@ -40,6 +49,8 @@ pub static KINDS: &[&Kind] = &[
     &field::transform_field::KIND,
     &field::image_from_file::KIND,
     &surface::blend::KIND,
+    &rings::weather::KIND,
+    &rings::growth_model::KIND,
     &shape::block::KIND,
     &shape::log::KIND,
     &view::view::KIND,

@@ -10,7 +10,7 @@ mod types;
 
 pub use climate::{Climate, Month};
 pub use colour_pattern::{AfterEnd, ColourPattern};
-pub use material::{FileType, MapFormat, Maps, Material, SampleType};
+pub use material::{FileType, MapFormat, Maps, Material, SampleType, Surface};
 pub use mesh::{Mesh, Triangle};
 pub use ring_series::RingSeries;
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
@@ -139,6 +139,32 @@ impl Value {
             | Value::Material(_)
             | Value::Maps(_) => key,
         };
+    }
+
+    /// The part of a record called `name`, if it is there.
+    pub fn part(&self, name: &str) -> Option<&Value> {
+        let Value::Record(parts) = self else {
+            return None;
+        };
+        let found = parts.iter().find(|(part, _)| *part == name);
+        found.map(|(_, value)| value)
+    }
+
+    /// The number, if it is a number or a whole number.
+    pub fn as_number(&self) -> Option<f64> {
+        match self {
+            Value::Number(number) => Some(*number),
+            Value::Whole(number) => Some(*number as f64),
+            _ => None,
+        }
+    }
+
+    /// The vector, if it is one.
+    pub fn as_vector(&self) -> Option<DVec3> {
+        match self {
+            Value::Vector(vector) => Some(*vector),
+            _ => None,
+        }
     }
 
     /// The name of the value's type in messages.

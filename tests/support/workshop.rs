@@ -31,6 +31,9 @@ impl Workshop {
             "spruce_log/Gran_1_knots.json",
             "spruce_bar/spruce_bar.png",
             "measured_tree/tree.csv",
+            "weather/oxforddata.txt",
+            "spot/spot.obj",
+            "teapot/teapot.txt",
         ] {
             files.insert(Path::new(folder).join(asset), asset_bytes(asset));
         }

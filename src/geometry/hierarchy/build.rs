@@ -123,7 +123,11 @@ fn divide(items: &mut [Item], padding: f64) -> Vec<Node> {
     let mut pending = vec![(0, Part::new(items, 0, items.len()), 0)];
     while let Some((node, part, depth)) = pending.pop() {
         let parts = quarters(items, part, depth >= DEEP);
-        for (lane, part) in parts.iter().enumerate().filter(|(_, part)| part.count() > 0) {
+        for (lane, part) in parts
+            .iter()
+            .enumerate()
+            .filter(|(_, part)| part.count() > 0)
+        {
             let child = if part.count() <= LEAF {
                 Child::leaf(part.start, part.count())
             } else {
@@ -157,7 +161,10 @@ fn set(node: &mut Node, lane: usize, part: &Part, child: Child, padding: f64) {
 fn quarters(items: &mut [Item], part: Part, evenly: bool) -> Vec<Part> {
     let mut parts = vec![part];
     while parts.len() < WIDTH {
-        let large = parts.iter().enumerate().filter(|(_, part)| part.count() > LEAF);
+        let large = parts
+            .iter()
+            .enumerate()
+            .filter(|(_, part)| part.count() > LEAF);
         let Some((index, _)) = large.max_by(|(_, a), (_, b)| match evenly {
             true => a.count().cmp(&b.count()),
             false => a.cost().total_cmp(&b.cost()),
@@ -216,7 +223,11 @@ fn cheapest(items: &[Item], bin: &impl Fn(&Item) -> usize) -> usize {
     for index in (1..BINS).rev() {
         bounds.add(bins[index].0.low, bins[index].0.high);
         count += bins[index].1;
-        behind[index] = if count > 0 { bounds.area() * count as f64 } else { 0.0 };
+        behind[index] = if count > 0 {
+            bounds.area() * count as f64
+        } else {
+            0.0
+        };
     }
     let (mut bounds, mut count) = (Growing::EMPTY, 0);
     let mut best = (f64::INFINITY, 1);
@@ -266,7 +277,9 @@ mod tests {
         for (index, [from, towards, _]) in scattered(300).into_iter().enumerate() {
             let ray = Ray::new(from * 1.2 - 10.0, (towards - from).normalize());
             let all = single.iter().filter_map(|one| one.first(&ray, 0.5, 1e9));
-            let expected = all.map(|meeting| meeting.distance).fold(f64::INFINITY, f64::min);
+            let expected = all
+                .map(|meeting| meeting.distance)
+                .fold(f64::INFINITY, f64::min);
             let found = hierarchy.first(&ray, 0.5, 1e9);
             let found = found.map_or(f64::INFINITY, |meeting| meeting.distance);
             assert_eq!(found, expected, "ray {index}");
@@ -288,6 +301,10 @@ mod tests {
         let back = Ray::new(DVec3::new(0.25, 0.25, -3.0), DVec3::Z);
         assert!(hierarchy.first(&back, 0.0, 10.0).unwrap().leaves);
         assert!(hierarchy.first(&back, 0.0, 2.9).is_none());
-        assert!(Hierarchy::new([].into_iter()).first(&ray, 0.0, 10.0).is_none());
+        assert!(
+            Hierarchy::new([].into_iter())
+                .first(&ray, 0.0, 10.0)
+                .is_none()
+        );
     }
 }

@@ -81,7 +81,12 @@ struct Node {
 impl Node {
     /// Where the ray enters the boxes, and whether it does so between two distances.
     #[inline(always)]
-    fn entries(&self, ray: &ShortRay, nearest: f32, furthest: f32) -> ([f32; WIDTH], [bool; WIDTH]) {
+    fn entries(
+        &self,
+        ray: &ShortRay,
+        nearest: f32,
+        furthest: f32,
+    ) -> ([f32; WIDTH], [bool; WIDTH]) {
         let (mut enter, mut leave) = ([nearest; WIDTH], [furthest; WIDTH]);
         for axis in 0..3 {
             let (origin, inverse) = (ray.origin[axis], ray.inverse[axis]);
@@ -89,11 +94,18 @@ impl Node {
                 let a = (self.low[axis][lane] - origin) * inverse;
                 let b = (self.high[axis][lane] - origin) * inverse;
                 let (near, far) = if a < b { (a, b) } else { (b, a) };
-                enter[lane] = if near > enter[lane] { near } else { enter[lane] };
+                enter[lane] = if near > enter[lane] {
+                    near
+                } else {
+                    enter[lane]
+                };
                 leave[lane] = if far < leave[lane] { far } else { leave[lane] };
             }
         }
-        (enter, std::array::from_fn(|lane| enter[lane] <= leave[lane]))
+        (
+            enter,
+            std::array::from_fn(|lane| enter[lane] <= leave[lane]),
+        )
     }
 }
 

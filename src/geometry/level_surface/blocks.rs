@@ -166,7 +166,9 @@ impl Block {
                     parts[(axis + 2) % 3] = index / CORNERS;
                     self.is_inside(parts)
                 };
-                let count = (0..CORNERS * CORNERS).filter(|index| is_inside(*index)).count();
+                let count = (0..CORNERS * CORNERS)
+                    .filter(|index| is_inside(*index))
+                    .count();
                 let mut number = self.number;
                 number[axis] += step;
                 let is_there = (0..=block_of(grid.cubes[axis])).contains(&number[axis]);

@@ -4,7 +4,7 @@ pub mod adjust_colour;
 pub mod combine;
 pub mod image_from_file;
 pub mod math;
-mod placement;
+pub(in crate::nodes) mod placement;
 pub mod position;
 mod profile;
 pub mod ramp;

@@ -3,9 +3,9 @@
 use super::form::Form;
 use super::octaves::{NoiseKernel, Octave};
 use super::period;
-use super::random::Random;
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Output};
+use crate::nodes::random::Random;
 use crate::value::{Domain, Type, Unit, Value};
 
 /// Where the maths of the noise kinds comes from.

@@ -8,7 +8,6 @@ mod lattice;
 mod octaves;
 mod period;
 pub mod plane_noise;
-mod random;
 pub mod solid_noise;
 
 #[cfg(test)]

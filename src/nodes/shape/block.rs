@@ -89,8 +89,12 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         .iter()
         .map(|point| DVec2::new(point.x / width + 0.5, point.y / height + 0.5))
         .collect();
-    mesh.points.iter_mut().for_each(|point| *point = centre + frame * *point);
-    mesh.normals.iter_mut().for_each(|normal| *normal = frame * *normal);
+    mesh.points
+        .iter_mut()
+        .for_each(|point| *point = centre + frame * *point);
+    mesh.normals
+        .iter_mut()
+        .for_each(|normal| *normal = frame * *normal);
     Ok(vec![Value::Mesh(Arc::new(mesh))])
 }
 
@@ -158,7 +162,8 @@ impl Body {
         // The tangent of 45 degrees is not quite 1, but faces meet there.
         let slope = |step: usize| if step == STEPS { 1.0 } else { slope(step) };
         let low = (0..=STEPS).rev().map(|step| (-1.0, slope(step)));
-        low.chain((0..=STEPS).map(|step| (1.0, slope(step)))).collect()
+        low.chain((0..=STEPS).map(|step| (1.0, slope(step))))
+            .collect()
     }
 
     fn point(&mut self, point: DVec3) -> u32 {
@@ -180,7 +185,8 @@ impl Body {
         for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
             let (b, c) = if is_turned { (c, b) } else { (b, c) };
             let points = [a, b, c].map(|corner| corners[corner].0);
-            let is_flat = points[0] == points[1] || points[1] == points[2] || points[0] == points[2];
+            let is_flat =
+                points[0] == points[1] || points[1] == points[2] || points[0] == points[2];
             if !is_flat {
                 self.mesh.triangles.push(Triangle {
                     points,

@@ -94,28 +94,35 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 
 /// The field, the sign that makes it positive inside, and the value that it has at the surface.
 fn level(inputs: &Inputs<'_>) -> Result<(Field, f64, f64), Failure> {
-    match (inputs.optional_field("time"), inputs.optional_field("inside")) {
+    match (
+        inputs.optional_field("time"),
+        inputs.optional_field("inside"),
+    ) {
         (Some(time), None) => match inputs.get("age") {
             Some(_) => Ok((time, -1.0, inputs.number("age"))),
             None => Err(Failure::of_input("time", "`time` is set, but no `age`")
                 .with_hint("say of which year the outermost wood is: `age: 40`")),
         },
         (None, Some(inside)) => Ok((inside, 1.0, 0.5)),
-        _ => Err(Failure::new("expected either `time` with `age`, or `inside`")
-            .with_hint("link one of them: `time: \"growth.time\", age: 40`")),
+        _ => Err(
+            Failure::new("expected either `time` with `age`, or `inside`")
+                .with_hint("link one of them: `time: \"growth.time\", age: 40`"),
+        ),
     }
 }
 
 fn explained(reason: NoSurface, inputs: &Inputs<'_>, cell: f64) -> Failure {
     match reason {
         NoSurface::Cancelled => Failure::new("the run was cancelled"),
-        NoSurface::Empty if inputs.get("inside").is_some() => {
-            Failure::of_input("inside", "the field is nowhere above 0.5 in the box, so there is no surface")
-                .with_hint("check `low` and `high`, or lower `detail` if the piece is thin")
-        }
+        NoSurface::Empty if inputs.get("inside").is_some() => Failure::of_input(
+            "inside",
+            "the field is nowhere above 0.5 in the box, so there is no surface",
+        )
+        .with_hint("check `low` and `high`, or lower `detail` if the piece is thin"),
         NoSurface::Empty => {
             let age = inputs.number("age");
-            let message = format!("the field never crosses {age} years in the box, so there is no surface");
+            let message =
+                format!("the field never crosses {age} years in the box, so there is no surface");
             Failure::of_input("age", message)
                 .with_hint("check `low` and `high`, or lower `detail` if the piece is thin")
         }
@@ -147,15 +154,22 @@ impl Sampler<'_> {
         };
         let evaluate = |scratch: &mut Scratch, points: &[DVec3]| {
             let points: Vec<[f64; 3]> = points.iter().map(DVec3::to_array).collect();
-            self.program.run(&Samples::Points(&points), scratch, &context);
+            self.program
+                .run(&Samples::Points(&points), scratch, &context);
             if context.is_cancelled() {
                 return None;
             }
             let values = &self.program.output(scratch, 0, 0)[..points.len()];
             let values = values.iter();
-            Some(values.map(|value| self.sign * (f64::from(*value) - self.level)).collect())
+            Some(
+                values
+                    .map(|value| self.sign * (f64::from(*value) - self.level))
+                    .collect(),
+            )
         };
-        let blocks = points.par_chunks(BLOCK).map_init(Scratch::default, evaluate);
+        let blocks = points
+            .par_chunks(BLOCK)
+            .map_init(Scratch::default, evaluate);
         let blocks: Option<Vec<Vec<f64>>> = blocks.collect();
         Some(blocks?.concat())
     }
@@ -193,7 +207,11 @@ fn mesh(surface: Surface, normals: Vec<DVec3>) -> Mesh {
             side => [smooth + u32::from(side); 3],
         },
         coordinates: [0; 3],
-        chart: if *side == 6 { 0 } else { Triangle::SAWN + u32::from(*side) },
+        chart: if *side == 6 {
+            0
+        } else {
+            Triangle::SAWN + u32::from(*side)
+        },
     };
     let triangles = surface.triangles.iter().zip(&surface.sides).map(triangle);
     Mesh {

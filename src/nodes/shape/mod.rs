@@ -1,4 +1,5 @@
-//! Shapes: meshes of things that materials are seen on.
+//! Shapes: meshes that materials are cut for.
 
 pub mod block;
 pub mod log;
+pub mod mesh_from_file;

@@ -114,5 +114,6 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         domain,
         channels,
         size: None,
+        surface: None,
     }))])
 }

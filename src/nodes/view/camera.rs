@@ -150,7 +150,10 @@ impl Camera {
     /// Tangents of the halves of the picture that things may fill.
     fn slopes(&self) -> [f64; 2] {
         let free = 1.0 - 2.0 * BORDER;
-        [self.half * self.size[0] / self.size[1] * free, self.half * free]
+        [
+            self.half * self.size[0] / self.size[1] * free,
+            self.half * free,
+        ]
     }
 
     /// Where a perspective shows all points, and no smaller than it must; with a target, in the middle.

@@ -82,7 +82,8 @@ pub(super) struct Disc {
 impl Disc {
     /// The rim in even steps, and a spiral of even density within.
     pub(super) fn new() -> Disc {
-        let point = |angle: f64, radius: f64| [radius * libm::cos(angle), radius * libm::sin(angle)];
+        let point =
+            |angle: f64, radius: f64| [radius * libm::cos(angle), radius * libm::sin(angle)];
         let rim = |index: usize| point(index as f64 * (2.0 * PI / RIM as f64), 1.0);
         let within = |index: usize| {
             let radius = ((index as f64 + 0.5) / WITHIN as f64).sqrt();
@@ -210,13 +211,7 @@ impl Light {
     }
 
     /// Which part of the light a point sees, from 0 to 1.
-    pub(super) fn visibility(
-        &self,
-        scene: &Scene,
-        disc: &Disc,
-        point: &Point,
-        turn: &Turn,
-    ) -> f64 {
+    pub(super) fn visibility(&self, scene: &Scene, disc: &Disc, point: &Point, turn: &Turn) -> f64 {
         let seen = self.seen(point.place);
         if point.normal.dot(seen.direction) <= 0.0 {
             // It lights nothing here.
@@ -258,7 +253,11 @@ fn perpendicular(normal: DVec3) -> [DVec3; 2] {
     let a = -1.0 / (sign + normal.z);
     let b = normal.x * normal.y * a;
     [
-        DVec3::new(1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x),
+        DVec3::new(
+            1.0 + sign * normal.x * normal.x * a,
+            sign * b,
+            -sign * normal.x,
+        ),
         DVec3::new(b, sign + normal.y * normal.y * a, -normal.y),
     ]
 }
@@ -290,7 +289,10 @@ impl Sky {
     pub(super) fn read(stated: &Record<'_>, count: usize, reach: f64) -> Sky {
         let strength = stated.number("strength").unwrap_or(0.5);
         let colour = |name: &str, default: [f64; 3]| {
-            stated.colour(name).unwrap_or(default).map(|part| part * strength)
+            stated
+                .colour(name)
+                .unwrap_or(default)
+                .map(|part| part * strength)
         };
         let direction = |index: usize| {
             let z = 1.0 - (index as f64 + 0.5) / count as f64;

@@ -12,11 +12,16 @@ const EDGE: f32 = 0.012;
 
 impl Kernel for Smooth {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("view smooth").whole(i64::from(super::view::KIND.version));
+        key.text("view smooth")
+            .whole(i64::from(super::view::KIND.version));
     }
 
     fn width(&self) -> usize {
         3
+    }
+
+    fn mixes_charts(&self) -> bool {
+        true
     }
 
     fn sampling(&self) -> Sampling {
@@ -43,7 +48,8 @@ const SHOULDER: f32 = 0.8;
 
 impl Kernel for Tone {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("view tone").whole(i64::from(super::view::KIND.version));
+        key.text("view tone")
+            .whole(i64::from(super::view::KIND.version));
     }
 
     fn width(&self) -> usize {

@@ -74,7 +74,8 @@ pub(super) struct Sight(pub(super) Arc<Stage>);
 
 impl Kernel for Sight {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("view sight").whole(i64::from(super::view::KIND.version));
+        key.text("view sight")
+            .whole(i64::from(super::view::KIND.version));
         self.0.add_to_key(key);
     }
 
@@ -89,9 +90,8 @@ impl Kernel for Sight {
     fn evaluate(&self, block: &mut Block<'_>) {
         each(block, |u, v, row| {
             let (ray, point) = self.0.look(u, v);
-            let point = point.unwrap_or_else(|| {
-                Point::on_plane(DVec3::ZERO, -ray.direction(), 0.0)
-            });
+            let point =
+                point.unwrap_or_else(|| Point::on_plane(DVec3::ZERO, -ray.direction(), 0.0));
             row[seen::PLACE..][..3].copy_from_slice(&point.place.to_array());
             row[seen::NORMAL..][..3].copy_from_slice(&point.normal.to_array());
             row[seen::SURFACE] = f64::from(point.surface);
@@ -107,7 +107,8 @@ pub(super) struct Illumination(pub(super) Arc<Stage>);
 
 impl Kernel for Illumination {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("view illumination").whole(i64::from(super::view::KIND.version));
+        key.text("view illumination")
+            .whole(i64::from(super::view::KIND.version));
         self.0.add_to_key(key);
     }
 

@@ -35,7 +35,6 @@ impl<'a> Record<'a> {
         }
     }
 
-
     pub(super) fn colour(&self, name: &str) -> Option<[f64; 3]> {
         match self.part(name)? {
             Value::Colour(colour) => Some(*colour),

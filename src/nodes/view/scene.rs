@@ -162,7 +162,9 @@ impl Thing {
     fn hierarchy(&self) -> &Hierarchy {
         self.hierarchy.get_or_init(|| {
             let corners = |triangle: &Triangle| {
-                triangle.points.map(|index| self.mesh.points[index as usize])
+                triangle
+                    .points
+                    .map(|index| self.mesh.points[index as usize])
             };
             Hierarchy::new(self.mesh.triangles.iter().map(corners))
         })
@@ -178,7 +180,11 @@ impl Thing {
             }
         };
         let left: Vec<DVec3> = self.mesh.points.iter().copied().filter(is_left).collect();
-        if left.is_empty() { self.mesh.points.clone() } else { left }
+        if left.is_empty() {
+            self.mesh.points.clone()
+        } else {
+            left
+        }
     }
 
     /// The part of a ray that lies on the given side of all cuts: behind them, or before.
@@ -247,11 +253,9 @@ impl Thing {
                 Some(notch) => {
                     hierarchy.any(ray, 0.0, furthest.min(notch.from))
                         || notch.to < furthest
-                            && hierarchy
-                                .first(ray, notch.to, f64::INFINITY)
-                                .is_some_and(|meeting| {
-                                    meeting.leaves || meeting.distance < furthest
-                                })
+                            && hierarchy.first(ray, notch.to, f64::INFINITY).is_some_and(
+                                |meeting| meeting.leaves || meeting.distance < furthest,
+                            )
                 }
             };
         }
@@ -280,11 +284,19 @@ impl Thing {
         let triangle = &self.mesh.triangles[meeting.triangle as usize];
         let [v, w] = meeting.weights;
         let weights = [1.0 - v - w, v, w];
-        let corners = triangle.points.map(|index| self.mesh.points[index as usize]);
-        let normals = triangle.normals.map(|index| self.mesh.normals[index as usize]);
+        let corners = triangle
+            .points
+            .map(|index| self.mesh.points[index as usize]);
+        let normals = triangle
+            .normals
+            .map(|index| self.mesh.normals[index as usize]);
         let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let face = face.try_normalize().unwrap_or(normals[0]);
-        let blended: DVec3 = normals.iter().zip(weights).map(|(it, weight)| *it * weight).sum();
+        let blended: DVec3 = normals
+            .iter()
+            .zip(weights)
+            .map(|(it, weight)| *it * weight)
+            .sum();
         let normal = blended.try_normalize().unwrap_or(face);
         // A sheet without an inside is seen from both sides.
         let side = if meeting.leaves { -1.0 } else { 1.0 };
@@ -294,7 +306,11 @@ impl Thing {
             all => {
                 let corner = |index: u32| all[index as usize];
                 let corners = triangle.coordinates.map(corner);
-                corners.iter().zip(weights).map(|(it, weight)| *it * weight).sum()
+                corners
+                    .iter()
+                    .zip(weights)
+                    .map(|(it, weight)| *it * weight)
+                    .sum()
             }
         };
         Point {

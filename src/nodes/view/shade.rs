@@ -52,14 +52,18 @@ struct Surface {
 
 impl Kernel for Shade {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("view shade").whole(i64::from(super::view::KIND.version));
+        key.text("view shade")
+            .whole(i64::from(super::view::KIND.version));
         self.stage.add_to_key(key);
         key.whole(i64::from(self.has_bark))
             .whole(i64::from(self.has_relief));
         key.number(f64::from(self.exposure));
-        self.background.iter().chain(&self.open_sky).for_each(|part| {
-            key.number(f64::from(*part));
-        });
+        self.background
+            .iter()
+            .chain(&self.open_sky)
+            .for_each(|part| {
+                key.number(f64::from(*part));
+            });
     }
 
     /// Linear colour, and a number by which edges are found.
@@ -68,12 +72,11 @@ impl Kernel for Shade {
     }
 
     fn reads_spread(&self, input: usize) -> bool {
-        let is_seen = |first: usize, count: usize| {
-            (SEEN + first..SEEN + first + count).contains(&input)
-        };
+        let is_seen =
+            |first: usize, count: usize| (SEEN + first..SEEN + first + count).contains(&input);
         let materials = self.materials();
         let is_height = input >= materials && (input - materials) % MATERIAL == 3;
-        self.has_relief && (is_seen(seen::PLACE, 3) || is_seen(seen::SURFACE, 1) || is_height)
+        self.has_relief && (is_seen(seen::PLACE, 3) || is_height)
     }
 
     fn nanoseconds(&self) -> f32 {
@@ -123,7 +126,11 @@ impl Shade {
             normal
         };
         let (u, v) = (inputs[0].values[index], inputs[1].values[index]);
-        let towards = -self.stage.camera.ray(f64::from(u), f64::from(v)).direction();
+        let towards = -self
+            .stage
+            .camera
+            .ray(f64::from(u), f64::from(v))
+            .direction();
         let towards = towards.as_vec3();
         let openness = openness * surface.occlusion;
         let mut light = self.sky(&surface, bent, towards, sky, openness);
@@ -276,13 +283,9 @@ fn many_times(colour: Vec3, openness: f32) -> Vec3 {
 }
 
 /// The normal bent by the slope of the relief (Mikkelsen 2010): from how height and place change from
-/// sample to sample, as long as the neighbours lie on the same surface.
+/// sample to sample of the same surface.
 fn bend(normal: Vec3, inputs: &[InputColumn<'_>], index: usize, height: usize) -> Vec3 {
     let change = |input: usize, axis: usize| inputs[input].spread[axis][index];
-    let surface = SEEN + seen::SURFACE;
-    if change(surface, 0) != 0.0 || change(surface, 1) != 0.0 {
-        return normal;
-    }
     let place = |axis: usize| {
         let part = |part: usize| change(SEEN + seen::PLACE + part, axis);
         Vec3::new(part(0), part(1), part(2))

@@ -16,7 +16,7 @@ use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::surface::material::default_of;
-use crate::value::{Domain, MapFormat, Maps, Material, Type, Unit, Value};
+use crate::value::{Domain, MapFormat, Maps, Material, Surface, Type, Unit, Value};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -149,7 +149,11 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         has_bark: bark.is_some(),
         has_relief,
         background: inputs.colour("background").map(|part| part as f32),
-        open_sky: stage.sky.light(None, &straight_up, &Turn::at(0.0, 0.0)).colour.map(|part| part as f32),
+        open_sky: stage
+            .sky
+            .light(None, &straight_up, &Turn::at(0.0, 0.0))
+            .colour
+            .map(|part| part as f32),
         stage,
         exposure: inputs.number("exposure") as f32,
     };
@@ -162,9 +166,15 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
             domain: Domain::Plane,
             channels: BTreeMap::from([(CHANNEL.to_owned(), picture)]),
             size: Some(pixels),
+            // Materials see no neighbours beyond the edge of a surface.
+            surface: Some(Surface {
+                tangents: None,
+                charts: vec![sight.part(seen::SURFACE, 1)],
+            }),
         },
         pixels: pixels.map(|side| side as u32),
         size: pixels,
+        is_view: true,
         channels: vec![CHANNEL.to_owned()],
         format,
         ranges: BTreeMap::new(),
@@ -175,7 +185,9 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 /// Everything but the materials.
 fn stage(inputs: &Inputs<'_>, size: [f64; 2]) -> Result<Stage, Failure> {
     let cuts = inputs.list("cuts").iter().enumerate();
-    let cuts = cuts.map(|(index, item)| cut(index, item)).collect::<Result<Vec<_>, _>>()?;
+    let cuts = cuts
+        .map(|(index, item)| cut(index, item))
+        .collect::<Result<Vec<_>, _>>()?;
     if cuts.len() > MOST_CUTS {
         let message = format!("expected at most {MOST_CUTS} cuts, found {}", cuts.len());
         return Err(Failure::of_input("cuts", message));
@@ -190,7 +202,10 @@ fn stage(inputs: &Inputs<'_>, size: [f64; 2]) -> Result<Stage, Failure> {
     let camera = Camera::new(&Record::of(inputs.get("camera")), size, &points, side)?;
     let lights = inputs.list("lights");
     if lights.len() > MOST_LIGHTS {
-        let message = format!("expected at most {MOST_LIGHTS} lights, found {}", lights.len());
+        let message = format!(
+            "expected at most {MOST_LIGHTS} lights, found {}",
+            lights.len()
+        );
         return Err(Failure::of_input("lights", message));
     }
     let lights = lights.iter().enumerate();

@@ -36,35 +36,7 @@ pub static KIND: Kind = Kind {
     version: 1,
     about: "When the wood at each point grew, along a curved trunk and its branches.",
     source: "Momoi & Takatera 2014, eqs. (9)-(18); exponent, reach and share are our own construction",
-    inputs: &[
-        Input::new("skeleton", Type::Skeleton, "Trunk and branches."),
-        Input::number(
-            "elongation",
-            Unit::MillimetrePerYear,
-            "How fast trunk and branches grow long.",
-        )
-        .range(1.0, 1e5),
-        Input::number(
-            "thickening",
-            Unit::MillimetrePerYear,
-            "How fast the trunk's radius grows.",
-        )
-        .range(1e-3, 1e4),
-        Input::number(
-            "sharpness",
-            Unit::One,
-            "Blend of trunk and branches: 1 soft, 2 paper, 16 hard.",
-        )
-        .default("2")
-        .range(1.0, 16.0),
-        Input::new(
-            "reach",
-            Type::Pair(Unit::Millimetre),
-            "Where a branch's influence ends, along and across it; fades from half of that on.",
-        )
-        .optional()
-        .range(1e-3, 1e6),
-    ],
+    inputs: INPUTS,
     outputs: &[
         Output::field("time", Type::Number(Unit::Year), "Growth time.").on(Domain::Solid),
         Output::field(
@@ -84,22 +56,61 @@ pub static KIND: Kind = Kind {
     build,
 };
 
+/// What grows, and how; `straight_growth_field` has the same inputs.
+pub(super) const INPUTS: &[Input] = &[
+    Input::new("skeleton", Type::Skeleton, "Trunk and branches."),
+    Input::number(
+        "elongation",
+        Unit::MillimetrePerYear,
+        "How fast trunk and branches grow long.",
+    )
+    .range(1.0, 1e5),
+    Input::number(
+        "thickening",
+        Unit::MillimetrePerYear,
+        "How fast the trunk's radius grows.",
+    )
+    .range(1e-3, 1e4),
+    Input::number(
+        "sharpness",
+        Unit::One,
+        "Blend of trunk and branches: 1 soft, 2 paper, 16 hard.",
+    )
+    .default("2")
+    .range(1.0, 16.0),
+    Input::new(
+        "reach",
+        Type::Pair(Unit::Millimetre),
+        "Where a branch's influence ends, along and across it; fades from half of that on.",
+    )
+    .optional()
+    .range(1e-3, 1e6),
+];
+
 fn build(inputs: &Inputs<'_>, context: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let model = GrowthModel::new(inputs.skeleton("skeleton"), settings(inputs))?;
+    Ok(times(context, model))
+}
+
+/// How a tree grows, as the inputs say.
+pub(super) fn settings(inputs: &Inputs<'_>) -> GrowthSettings {
     let reach = inputs.get("reach").map(|_| {
         let [along, across] = inputs.pair("reach");
         Reach { along, across }
     });
-    let settings = GrowthSettings {
+    GrowthSettings {
         elongation: inputs.number("elongation"),
         thickening: inputs.number("thickening"),
         sharpness: inputs.number("sharpness"),
         reach,
-    };
-    let model = GrowthModel::new(inputs.skeleton("skeleton"), settings)?;
+    }
+}
+
+/// The outputs `time` and `branch` of a model.
+pub(super) fn times(context: &Build<'_>, model: GrowthModel) -> Vec<Value> {
     let position = Field::position(Domain::Solid);
     let growth = context.kernel(GrowthKernel::new(model), vec![position]);
-    Ok(vec![
-        Value::Field(growth.part(0, 1)),
-        Value::Field(growth.part(1, 1)),
-    ])
+    [0, 1]
+        .map(|column| Value::Field(growth.part(column, 1)))
+        .to_vec()
 }

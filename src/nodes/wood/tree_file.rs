@@ -14,13 +14,13 @@
 //! of its first part, and has the thickness that it has there. Branches of branches are left out, and so are
 //! branches that begin beyond the ends of the trunk or have no length or thickness. What is left out is told.
 
-mod cells;
 mod segments;
 
-pub(super) use cells::{Fault, LengthUnit};
+pub(super) use crate::nodes::cells::{Fault, LengthUnit};
 
 use crate::geometry::spline::TrunkCurve;
 use crate::node::Build;
+use crate::nodes::cells;
 use crate::value::{Branch, Skeleton, Tangents, Thickness};
 use glam::DVec3;
 use segments::Segment;
@@ -183,5 +183,6 @@ fn branch(segment: &Segment, curve: &TrunkCurve) -> Option<Branch> {
         height: segment.start.z,
         direction: chord.try_normalize()?,
         thickness,
+        length: Some(chord.length()),
     })
 }

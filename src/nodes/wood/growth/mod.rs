@@ -4,13 +4,21 @@
 mod branches;
 mod heights;
 mod kernel;
+mod line;
 pub(super) mod log_file;
 mod model;
 mod near;
 mod power;
+mod straight;
+mod straight_columns;
 mod trunk;
 
+pub(super) use heights::Heights;
 pub use kernel::GrowthKernel;
+use kernel::RUN;
+pub use line::TrunkLine;
 pub use model::{
     BranchTerms, GrowingBranch, GrowthModel, GrowthSettings, Reach, Terms, growth_time,
 };
+pub use straight::{Region, Seen, StraightTrunk, Way};
+pub(super) use straight_columns::RegionKernel;

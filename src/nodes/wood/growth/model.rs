@@ -1,5 +1,7 @@
 //! Growth time in double precision, term by term: the reference that the kernel is tested against.
 
+use super::line::TrunkLine;
+use super::straight::{StraightTrunk, Way};
 use crate::geometry::spline::TrunkCurve;
 use crate::node::Failure;
 use crate::value::{Skeleton, Thickness};
@@ -47,7 +49,7 @@ pub struct GrowingBranch {
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrowthModel {
     /// The trunk.
-    pub curve: TrunkCurve,
+    pub trunk: TrunkLine,
     /// The branches in the order of the skeleton.
     pub branches: Vec<GrowingBranch>,
     /// How it grows.
@@ -102,7 +104,7 @@ pub fn growth_time(
 }
 
 impl GrowthModel {
-    /// Puts the curve through the trunk and finds how fast each branch thickens.
+    /// A tree with a curved trunk; finds how fast each branch thickens.
     ///
     /// # Errors
     /// Nodes that make no curve, a branch that starts beyond the ends of the trunk, a direction of length
@@ -110,17 +112,37 @@ impl GrowthModel {
     pub fn new(skeleton: &Skeleton, settings: GrowthSettings) -> Result<GrowthModel, Failure> {
         let curve = TrunkCurve::through(&skeleton.trunk, skeleton.tangents)
             .map_err(|error| Failure::of_input("skeleton", format!("trunk: {error}")))?;
+        GrowthModel::along(TrunkLine::Curved(curve), skeleton, settings)
+    }
+
+    /// A tree with a trunk of straight segments; finds how fast each branch thickens.
+    ///
+    /// # Errors
+    /// As [`GrowthModel::new`].
+    pub fn straight(skeleton: &Skeleton, settings: GrowthSettings) -> Result<GrowthModel, Failure> {
+        // The curve is not used, but a trunk that it cannot follow is none.
+        TrunkCurve::through(&skeleton.trunk, skeleton.tangents)
+            .map_err(|error| Failure::of_input("skeleton", format!("trunk: {error}")))?;
+        let trunk = StraightTrunk::through(&skeleton.trunk);
+        GrowthModel::along(TrunkLine::Straight(trunk), skeleton, settings)
+    }
+
+    fn along(
+        trunk: TrunkLine,
+        skeleton: &Skeleton,
+        settings: GrowthSettings,
+    ) -> Result<GrowthModel, Failure> {
         let mut model = GrowthModel {
-            curve,
+            trunk,
             branches: vec![],
             settings,
         };
         for (index, branch) in skeleton.branches.iter().enumerate() {
-            let start = model.curve.at(branch.height);
+            let start = model.trunk.at(branch.height);
             let mut growing = GrowingBranch {
                 start,
                 direction: branch.direction.normalize_or_zero(),
-                start_time: branch.height / settings.elongation,
+                start_time: model.trunk.way_to(branch.height) / settings.elongation,
                 thickening: 0.0,
             };
             let thickening = model
@@ -134,10 +156,25 @@ impl GrowthModel {
         Ok(model)
     }
 
-    /// T_1 in years, eqs. (9)-(13): cones about the trunk's curve.
+    /// T_1 in years, eqs. (9)-(13): cones about the trunk's curve; or eqs. (1)-(3) and the blend of the straight
+    /// skeleton.
     pub fn trunk_time(&self, point: DVec3) -> f64 {
-        let across = (point - self.curve.at(point.z)).truncate().length();
-        point.z / self.settings.elongation + across / self.settings.thickening
+        match &self.trunk {
+            TrunkLine::Curved(curve) => self.time_of(Way {
+                along: point.z,
+                across: (point - curve.at(point.z)).truncate().length(),
+            }),
+            TrunkLine::Straight(trunk) => {
+                let seen = trunk.see(point);
+                let [first, second] = seen.ways.map(|way| self.time_of(way));
+                seen.share * first + (1.0 - seen.share) * second
+            }
+        }
+    }
+
+    /// How many years growth took along the trunk and from there to the bark.
+    fn time_of(&self, way: Way) -> f64 {
+        way.along / self.settings.elongation + way.across / self.settings.thickening
     }
 
     /// When the wood at `point` (mm) grew, with all terms.
@@ -181,7 +218,7 @@ impl GrowthModel {
     }
 
     fn check(&self, height: f64, branch: &GrowingBranch) -> Result<(), String> {
-        let [lowest, highest] = self.curve.heights();
+        let [lowest, highest] = self.trunk.heights();
         if !(lowest..=highest).contains(&height) {
             return Err(format!(
                 "expected a start between z = {lowest} and z = {highest} mm, found {height}"

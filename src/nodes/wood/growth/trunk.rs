@@ -1,9 +1,9 @@
 //! Growth time by the trunk alone, for columns of positions.
 
-use super::GrowthModel;
+use super::GrowthSettings;
 use super::heights::Heights;
 use crate::field::transposed;
-use crate::geometry::spline::Piece;
+use crate::geometry::spline::{Piece, TrunkCurve};
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -30,15 +30,10 @@ struct PieceConstants {
 }
 
 impl TrunkTable {
-    pub(super) fn new(model: &GrowthModel) -> TrunkTable {
-        let nodes: Vec<f32> = model
-            .curve
-            .nodes()
-            .iter()
-            .map(|node| node.z as f32)
-            .collect();
+    pub(super) fn new(curve: &TrunkCurve, settings: &GrowthSettings) -> TrunkTable {
+        let nodes: Vec<f32> = curve.nodes().iter().map(|node| node.z as f32).collect();
         let starts = std::iter::once(&nodes[0]).chain(&nodes);
-        let pieces = model.curve.pieces();
+        let pieces = curve.pieces();
         TrunkTable {
             heights: Heights::new(&nodes),
             pieces: pieces
@@ -46,8 +41,8 @@ impl TrunkTable {
                 .zip(starts)
                 .map(|(p, z)| PieceConstants::new(p, *z))
                 .collect(),
-            years_along: (1.0 / model.settings.elongation) as f32,
-            years_across: (1.0 / model.settings.thickening) as f32,
+            years_along: (1.0 / settings.elongation) as f32,
+            years_across: (1.0 / settings.thickening) as f32,
         }
     }
 }

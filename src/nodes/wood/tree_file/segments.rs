@@ -1,6 +1,6 @@
 //! Straight parts of a measured tree, from nodes or from cylinders.
 
-use super::cells::{Fault, Row, Table};
+use crate::nodes::cells::{Fault, Row, Table};
 use glam::DVec3;
 use std::collections::HashMap;
 

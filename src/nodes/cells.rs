@@ -9,16 +9,16 @@ const MOST_ROWS: usize = 1_000_000;
 
 /// What is wrong with a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Fault {
+pub(in crate::nodes) struct Fault {
     /// What is wrong, and where.
-    pub(crate) message: String,
+    pub(in crate::nodes) message: String,
     /// What to do.
-    pub(crate) hint: Option<String>,
+    pub(in crate::nodes) hint: Option<String>,
 }
 
 impl Fault {
     /// Something about the whole file.
-    pub(crate) fn whole(message: impl Into<String>) -> Fault {
+    pub(in crate::nodes) fn whole(message: impl Into<String>) -> Fault {
         Fault {
             message: message.into(),
             hint: None,
@@ -26,11 +26,11 @@ impl Fault {
     }
 
     /// Something about a line.
-    pub(super) fn line(line: u64, message: &str) -> Fault {
+    pub(in crate::nodes) fn line(line: u64, message: &str) -> Fault {
         Fault::whole(format!("line {line}: {message}"))
     }
 
-    pub(super) fn hint(mut self, hint: impl Into<String>) -> Fault {
+    pub(in crate::nodes) fn hint(mut self, hint: impl Into<String>) -> Fault {
         self.hint = Some(hint.into());
         self
     }
@@ -40,14 +40,14 @@ impl Fault {
 ///
 /// # Errors
 /// If the run was cancelled.
-pub(super) fn go_on(build: &Build<'_>) -> Result<(), Fault> {
+pub(in crate::nodes) fn go_on(build: &Build<'_>) -> Result<(), Fault> {
     let unless_cancelled = build.go_on();
     unless_cancelled.map_err(|failure| Fault::whole(failure.message))
 }
 
 /// The unit of the lengths in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LengthUnit {
+pub(in crate::nodes) enum LengthUnit {
     /// Millimetres.
     Millimetre,
     /// Centimetres.
@@ -58,10 +58,10 @@ pub(crate) enum LengthUnit {
 
 impl LengthUnit {
     /// The names that recipes and files use.
-    pub(crate) const NAMES: &'static [&'static str] = &["mm", "cm", "m"];
+    pub(in crate::nodes) const NAMES: &'static [&'static str] = &["mm", "cm", "m"];
 
     /// The unit called `name`.
-    pub(crate) fn from_name(name: &str) -> Option<LengthUnit> {
+    pub(in crate::nodes) fn from_name(name: &str) -> Option<LengthUnit> {
         let units = [
             LengthUnit::Millimetre,
             LengthUnit::Centimetre,
@@ -82,19 +82,19 @@ impl LengthUnit {
 
 /// A row of cells.
 #[derive(Debug)]
-pub(super) struct Row {
+pub(in crate::nodes) struct Row {
     /// The line in the file, from 1.
-    pub(super) line: u64,
+    pub(in crate::nodes) line: u64,
     cells: StringRecord,
 }
 
 /// A file with named columns.
 #[derive(Debug)]
-pub(super) struct Table<'a> {
+pub(in crate::nodes) struct Table<'a> {
     columns: HashMap<String, usize>,
     header: Vec<String>,
     /// The rows in the order of the file, at least one.
-    pub(super) rows: Vec<Row>,
+    pub(in crate::nodes) rows: Vec<Row>,
     decimal_comma: bool,
     unit: Option<LengthUnit>,
     build: &'a Build<'a>,
@@ -104,7 +104,7 @@ pub(super) struct Table<'a> {
 ///
 /// # Errors
 /// What is no text, and rows that do not fit the header.
-pub(super) fn read<'a>(bytes: &[u8], build: &'a Build<'a>) -> Result<Table<'a>, Fault> {
+pub(in crate::nodes) fn read<'a>(bytes: &[u8], build: &'a Build<'a>) -> Result<Table<'a>, Fault> {
     let text = text(bytes)?;
     let (unit, header_line) = remarks(text)?;
     let separator = separator(header_line);
@@ -143,7 +143,11 @@ pub(super) fn read<'a>(bytes: &[u8], build: &'a Build<'a>) -> Result<Table<'a>, 
     }
 }
 
-fn text(bytes: &[u8]) -> Result<&str, Fault> {
+/// The text of a file: UTF-8 with or without a mark.
+///
+/// # Errors
+/// Other encodings, and what is no text.
+pub(in crate::nodes) fn text(bytes: &[u8]) -> Result<&str, Fault> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(Fault::whole("the file is UTF-16").hint("save it as UTF-8"));
     }
@@ -208,7 +212,7 @@ impl Table<'_> {
         go_on(self.build)?;
         if self.rows.len() == MOST_ROWS {
             let message = format!("more than {MOST_ROWS} rows");
-            return Err(Fault::whole(message).hint("leave out the finest branches"));
+            return Err(Fault::whole(message).hint("leave out what is finest"));
         }
         if row.cells.iter().any(|cell| cell.contains(['\n', '\r'])) {
             return Err(Fault::line(row.line, "a quotation mark that is not closed"));
@@ -229,12 +233,17 @@ impl Table<'_> {
     }
 
     /// Whether there is a column of this name.
-    pub(super) fn has(&self, column: &str) -> bool {
+    pub(in crate::nodes) fn has(&self, column: &str) -> bool {
         self.columns.contains_key(column)
     }
 
+    /// The names of the columns, in lower case.
+    pub(in crate::nodes) fn header(&self) -> impl Iterator<Item = &str> {
+        self.header.iter().map(String::as_str)
+    }
+
     /// The names of the columns, for messages.
-    pub(super) fn names(&self) -> String {
+    pub(in crate::nodes) fn names(&self) -> String {
         self.header.join(", ")
     }
 
@@ -242,7 +251,7 @@ impl Table<'_> {
     ///
     /// # Errors
     /// If neither the recipe nor the file states a unit, or both state different ones.
-    pub(super) fn millimetres(&self, stated: Option<LengthUnit>) -> Result<f64, Fault> {
+    pub(in crate::nodes) fn millimetres(&self, stated: Option<LengthUnit>) -> Result<f64, Fault> {
         match (stated, self.unit) {
             (Some(recipe), Some(file)) if recipe != file => {
                 let name = |unit: LengthUnit| LengthUnit::NAMES[unit as usize];
@@ -262,7 +271,7 @@ impl Table<'_> {
     }
 
     /// The cell of a row in a column that is there.
-    pub(super) fn cell<'r>(&self, row: &'r Row, column: &str) -> &'r str {
+    pub(in crate::nodes) fn cell<'r>(&self, row: &'r Row, column: &str) -> &'r str {
         let index = self.columns.get(column).copied();
         index
             .and_then(|index| row.cells.get(index))
@@ -270,7 +279,7 @@ impl Table<'_> {
     }
 
     /// A finite number.
-    pub(super) fn number(&self, row: &Row, column: &str) -> Result<f64, Fault> {
+    pub(in crate::nodes) fn number(&self, row: &Row, column: &str) -> Result<f64, Fault> {
         go_on(self.build)?;
         let cell = self.cell(row, column);
         let number = match self.decimal_comma && !cell.contains('.') {
@@ -282,7 +291,7 @@ impl Table<'_> {
     }
 
     /// A whole number.
-    pub(super) fn whole(&self, row: &Row, column: &str) -> Result<i64, Fault> {
+    pub(in crate::nodes) fn whole(&self, row: &Row, column: &str) -> Result<i64, Fault> {
         let number = self.number(row, column)?;
         match number.fract() == 0.0 {
             true => Ok(number as i64),
@@ -291,7 +300,7 @@ impl Table<'_> {
     }
 
     /// Says that a cell is not what is expected.
-    pub(super) fn refuse(&self, row: &Row, column: &str, expected: &str) -> Fault {
+    pub(in crate::nodes) fn refuse(&self, row: &Row, column: &str, expected: &str) -> Fault {
         let number = self.columns.get(column).map_or(0, |index| index + 1);
         let found = match self.cell(row, column) {
             "" => "an empty cell".to_owned(),

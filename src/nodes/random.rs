@@ -3,11 +3,11 @@
 use crate::key::KeyHasher;
 
 /// A stream of random numbers.
-pub(super) struct Random(u64);
+pub(in crate::nodes) struct Random(u64);
 
 impl Random {
     /// The stream of one node: of the recipe's seed, the kind, and the node's own seed.
-    pub(super) fn new(recipe_seed: u64, kind: &str, node_seed: i64) -> Random {
+    pub(in crate::nodes) fn new(recipe_seed: u64, kind: &str, node_seed: i64) -> Random {
         let key = KeyHasher::new("random", 1)
             .bytes(&recipe_seed.to_le_bytes())
             .text(kind)
@@ -17,7 +17,7 @@ impl Random {
     }
 
     /// 32 random bits.
-    pub(super) fn bits(&mut self) -> u32 {
+    pub(in crate::nodes) fn bits(&mut self) -> u32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -25,7 +25,7 @@ impl Random {
     }
 
     /// A number from 0 to less than 1, in steps of 2^-24.
-    pub(super) fn share(&mut self) -> f32 {
+    pub(in crate::nodes) fn share(&mut self) -> f32 {
         (self.bits() >> 8) as f32 / 16_777_216.0
     }
 }

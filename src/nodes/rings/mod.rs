@@ -1,0 +1,5 @@
+//! From weather to tree rings.
+
+pub mod growth_model;
+pub mod ring_series;
+pub mod weather;
