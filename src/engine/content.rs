@@ -31,7 +31,7 @@ pub(super) fn key(value: &Value) -> Key {
             maps.size.iter().for_each(|length| {
                 key.number(*length);
             });
-            key.text(maps.format.name());
+            key.text(maps.format.name()).whole(i64::from(maps.is_view));
             for (channel, range) in &maps.ranges {
                 key.text(channel).number(range[0]).number(range[1]);
             }

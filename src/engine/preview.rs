@@ -115,7 +115,7 @@ impl Output<'_> {
         let mut side = COARSEST;
         loop {
             let start = Instant::now();
-            let target = FlatPiece::new(scaled(full, side), maps.size);
+            let target = FlatPiece::of(maps, scaled(full, side));
             self.write_preview(maps, &target, &program, (channel, kind))?;
             let is_whole = side >= FINEST.min(full[0].max(full[1]));
             if is_whole || Instant::now() + GROWTH * start.elapsed() > end {

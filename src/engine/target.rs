@@ -2,6 +2,7 @@
 
 use crate::field::{Target, remainder};
 use crate::key::{Key, KeyHasher};
+use crate::value::Maps;
 
 /// A flat piece seen from the front: u runs to the right from 0 at the left edge, v runs up from 0 at the
 /// lower edge, both in mm.
@@ -9,12 +10,34 @@ use crate::key::{Key, KeyHasher};
 pub struct FlatPiece {
     pixels: [u32; 2],
     size: [f64; 2],
+    /// The place of the lower left corner.
+    corner: [f64; 2],
 }
 
 impl FlatPiece {
     /// A piece of `size` mm on `pixels` pixels.
     pub fn new(pixels: [u32; 2], size: [f64; 2]) -> FlatPiece {
-        FlatPiece { pixels, size }
+        FlatPiece {
+            pixels,
+            size,
+            corner: [0.0; 2],
+        }
+    }
+
+    /// What the pixels of some maps lie on, in a size of the run's choice. A piece is stretched onto another shape;
+    /// a view is shown whole, with more beside it or above and below.
+    pub(super) fn of(maps: &Maps, pixels: [u32; 2]) -> FlatPiece {
+        if !maps.is_view {
+            return FlatPiece::new(pixels, maps.size);
+        }
+        let sides = pixels.map(f64::from);
+        let scale = f64::max(maps.size[0] / sides[0], maps.size[1] / sides[1]);
+        let size = sides.map(|side| side * scale);
+        FlatPiece {
+            pixels,
+            size,
+            corner: [0, 1].map(|axis| 0.5 * (maps.size[axis] - size[axis])),
+        }
     }
 }
 
@@ -27,6 +50,11 @@ impl Target for FlatPiece {
         self.size.iter().for_each(|length| {
             key.number(*length);
         });
+        if self.corner != [0.0; 2] {
+            self.corner.iter().for_each(|length| {
+                key.number(*length);
+            });
+        }
         key.finish()
     }
 
@@ -37,16 +65,16 @@ impl Target for FlatPiece {
     fn write_row(&self, x: f64, y: f64, step: f64, [u, v, w]: [&mut [f32]; 3]) {
         let [across, down] = [0, 1].map(|axis| self.size[axis] / f64::from(self.pixels[axis]));
         for (index, u) in (0i32..).zip(u) {
-            *u = ((x + f64::from(index) * step) * across) as f32;
+            *u = (self.corner[0] + (x + f64::from(index) * step) * across) as f32;
         }
-        v.fill((self.size[1] - y * down) as f32);
+        v.fill((self.corner[1] + (self.size[1] - y * down)) as f32);
         w.fill(0.0);
     }
 
     fn write_remainders(&self, x: f64, _: f64, step: f64, row: &mut [f32]) {
         let across = self.size[0] / f64::from(self.pixels[0]);
         for (index, value) in (0i32..).zip(row) {
-            *value = remainder((x + f64::from(index) * step) * across);
+            *value = remainder(self.corner[0] + (x + f64::from(index) * step) * across);
         }
     }
 }

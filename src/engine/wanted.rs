@@ -178,7 +178,7 @@ impl Output<'_> {
 
     /// Where maps are sampled.
     pub(super) fn target(&self, maps: &Maps) -> FlatPiece {
-        FlatPiece::new(self.pixels(maps), maps.size)
+        FlatPiece::of(maps, self.pixels(maps))
     }
 
     fn wanted_maps(&self, maps: &Maps, target: &FlatPiece) -> Vec<WantedMap> {

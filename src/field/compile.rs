@@ -299,8 +299,8 @@ impl Compiler {
         key.key(field.key()).key(self.places[place].key);
         self.charts.add_to_key(&mut key);
         let charts = match within {
-            Some(_) => self.charts.columns.clone(),
-            None => vec![],
+            Some(_) if !kernel.mixes_charts() => self.charts.columns.clone(),
+            _ => vec![],
         };
         let step = KernelStep {
             kernel,

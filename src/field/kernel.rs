@@ -55,6 +55,12 @@ pub trait Kernel: Send + Sync + Debug {
         Sampling::Filtered
     }
 
+    /// Whether the mean over a supersampled pixel takes in samples of other charts: so where a picture shows what lies
+    /// side by side in it, and not a piece.
+    fn mixes_charts(&self) -> bool {
+        false
+    }
+
     /// Nanoseconds of work per sample, roughly; dear columns are worth caching.
     fn nanoseconds(&self) -> f32 {
         1.0

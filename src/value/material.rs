@@ -223,6 +223,8 @@ pub struct Maps {
     pub pixels: [u32; 2],
     /// Width and height of the piece in mm.
     pub size: [f64; 2],
+    /// Whether it is a picture of things in space: with other pixels it shows more, instead of being stretched.
+    pub is_view: bool,
     /// The channels to write, in the order of the recipe.
     pub channels: Vec<String>,
     /// How samples are written.

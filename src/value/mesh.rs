@@ -29,6 +29,11 @@ pub struct Triangle {
     pub chart: u32,
 }
 
+impl Triangle {
+    /// Charts from this number on are faces at which the thing was sawn off: no bark lies on them.
+    pub const SAWN: u32 = 1 << 31;
+}
+
 /// Most triangles or points of a mesh, and the largest coordinate in mm.
 const MOST: usize = 50_000_000;
 const LARGEST: f64 = 1e9;

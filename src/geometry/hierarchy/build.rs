@@ -1,16 +1,19 @@
 //! Builds hierarchies: boxes are divided where the surface area heuristic costs least (Wald 2007, binned).
 
-use super::{Bounds, Branch, Child, Hierarchy};
+use super::{Child, Hierarchy, Node, WIDTH};
 use glam::DVec3;
 
 /// Bins along each axis.
 const BINS: usize = 16;
 
 /// Triangles that are not divided any more.
-const LEAF: usize = 3;
+const LEAF: usize = 4;
 
-/// Depth from which on boxes are divided into halves: then no hierarchy is deeper than rays can go.
-const DEEP: usize = 48;
+/// Depth from which on boxes are divided into equal numbers: then no hierarchy is deeper than rays can go.
+const DEEP: usize = 16;
+
+/// Where boxes lie that hold nothing.
+const NOWHERE: f32 = 3e38;
 
 /// How much larger boxes are than what they hold, as a part of the largest coordinate: more than what
 /// rounding to single precision takes off.
@@ -38,13 +41,6 @@ impl Growing {
         let side = (self.high - self.low).max(DVec3::ZERO);
         side.x * side.y + side.y * side.z + side.z * side.x
     }
-
-    fn rounded(&self, padding: f64) -> Bounds {
-        Bounds {
-            low: (self.low - padding).as_vec3().to_array(),
-            high: (self.high + padding).as_vec3().to_array(),
-        }
-    }
 }
 
 /// A triangle on its way into a box.
@@ -61,13 +57,28 @@ impl Item {
     }
 }
 
-/// A range of items that becomes a child of a branch.
+/// A range of items, with the box around them.
+#[derive(Clone, Copy)]
 struct Part {
     start: usize,
     end: usize,
-    parent: usize,
-    side: usize,
-    depth: usize,
+    bounds: Growing,
+}
+
+impl Part {
+    fn new(items: &[Item], start: usize, end: usize) -> Part {
+        let bounds = around(&items[start..end]);
+        Part { start, end, bounds }
+    }
+
+    fn count(&self) -> usize {
+        self.end - self.start
+    }
+
+    /// What rays have to do with it, roughly.
+    fn cost(&self) -> f64 {
+        self.bounds.area() * self.count() as f64
+    }
 }
 
 impl Hierarchy {
@@ -83,15 +94,15 @@ impl Hierarchy {
         let whole = around(&items);
         let largest = whole.low.abs().max(whole.high.abs()).max_element();
         let padding = PADDING * if largest.is_finite() { largest } else { 0.0 };
-        let (branches, root) = divide(&mut items, padding);
+        let nodes = divide(&mut items, padding);
         let edges = |item: &Item| {
             let [a, b, c] = corners[item.index as usize];
             [a, b - a, c - a]
         };
         Hierarchy {
-            branches,
-            root,
-            bounds: whole.rounded(padding),
+            nodes,
+            bounds: [whole.low - padding, whole.high + padding]
+                .map(|corner| corner.as_vec3().to_array()),
             triangles: items.iter().map(edges).collect(),
             order: items.iter().map(|item| item.index).collect(),
         }
@@ -106,58 +117,69 @@ fn around(items: &[Item]) -> Growing {
     bounds
 }
 
-/// Puts the items in order and gives the branches over them.
-fn divide(items: &mut [Item], padding: f64) -> (Vec<Branch>, Child) {
-    let leaf = |start: usize, end: usize| Child {
-        first: start as u32,
-        count: (end - start) as u32,
-    };
-    let mut branches: Vec<Branch> = vec![];
-    if items.len() <= LEAF {
-        return (branches, leaf(0, items.len()));
-    }
-    let mut pending = vec![Part {
-        start: 0,
-        end: items.len(),
-        parent: usize::MAX,
-        side: 0,
-        depth: 0,
-    }];
-    while let Some(part) = pending.pop() {
-        let range = &mut items[part.start..part.end];
-        let half = if part.depth < DEEP {
-            split(range)
-        } else {
-            range.len() / 2
-        };
-        let middle = part.start + half;
-        let index = branches.len();
-        let halves = [(part.start, middle), (middle, part.end)];
-        let bounds = halves.map(|(start, end)| around(&items[start..end]).rounded(padding));
-        branches.push(Branch {
-            bounds,
-            children: halves.map(|(start, end)| leaf(start, end)),
-        });
-        if part.parent != usize::MAX {
-            branches[part.parent].children[part.side] = Child {
-                first: index as u32,
-                count: 0,
+/// Puts the items in order and gives the nodes over them, the first over all.
+fn divide(items: &mut [Item], padding: f64) -> Vec<Node> {
+    let mut nodes = vec![empty()];
+    let mut pending = vec![(0, Part::new(items, 0, items.len()), 0)];
+    while let Some((node, part, depth)) = pending.pop() {
+        let parts = quarters(items, part, depth >= DEEP);
+        for (lane, part) in parts
+            .iter()
+            .enumerate()
+            .filter(|(_, part)| part.count() > 0)
+        {
+            let child = if part.count() <= LEAF {
+                Child::leaf(part.start, part.count())
+            } else {
+                nodes.push(empty());
+                pending.push((nodes.len() - 1, *part, depth + 1));
+                Child::node(nodes.len() - 1)
             };
-        }
-        for (side, (start, end)) in halves.into_iter().enumerate() {
-            if end - start > LEAF {
-                pending.push(Part {
-                    start,
-                    end,
-                    parent: index,
-                    side,
-                    depth: part.depth + 1,
-                });
-            }
+            set(&mut nodes[node], lane, part, child, padding);
         }
     }
-    let root = Child { first: 0, count: 0 };
-    (branches, root)
+    nodes
+}
+
+fn empty() -> Node {
+    Node {
+        low: [[NOWHERE; WIDTH]; 3],
+        high: [[NOWHERE; WIDTH]; 3],
+        children: [Child::leaf(0, 0); WIDTH],
+    }
+}
+
+fn set(node: &mut Node, lane: usize, part: &Part, child: Child, padding: f64) {
+    for axis in 0..3 {
+        node.low[axis][lane] = (part.bounds.low[axis] - padding) as f32;
+        node.high[axis][lane] = (part.bounds.high[axis] + padding) as f32;
+    }
+    node.children[lane] = child;
+}
+
+/// A part in up to four: the costliest one is divided until there are four or all are small.
+fn quarters(items: &mut [Item], part: Part, evenly: bool) -> Vec<Part> {
+    let mut parts = vec![part];
+    while parts.len() < WIDTH {
+        let large = parts
+            .iter()
+            .enumerate()
+            .filter(|(_, part)| part.count() > LEAF);
+        let Some((index, _)) = large.max_by(|(_, a), (_, b)| match evenly {
+            true => a.count().cmp(&b.count()),
+            false => a.cost().total_cmp(&b.cost()),
+        }) else {
+            break;
+        };
+        let Part { start, end, .. } = parts.swap_remove(index);
+        let half = match evenly {
+            true => (end - start) / 2,
+            false => split(&mut items[start..end]),
+        };
+        parts.push(Part::new(items, start, start + half));
+        parts.push(Part::new(items, start + half, end));
+    }
+    parts
 }
 
 /// Moves items so that those of one half come first; gives their number, neither none nor all.

@@ -66,49 +66,80 @@ pub(crate) struct Meeting {
     pub(crate) leaves: bool,
 }
 
-/// A box of two corners.
+/// Boxes side by side in a node.
+const WIDTH: usize = 4;
+
+/// Four boxes and what is in them; boxes that hold nothing lie where no ray comes.
 #[derive(Clone, Copy, Debug)]
-struct Bounds {
-    low: [f32; 3],
-    high: [f32; 3],
+struct Node {
+    /// Along each axis the lower sides of the four boxes, and the upper ones.
+    low: [[f32; WIDTH]; 3],
+    high: [[f32; WIDTH]; 3],
+    children: [Child; WIDTH],
 }
 
-impl Bounds {
-    /// Where the ray enters the box, if it does so before `furthest`.
+impl Node {
+    /// Where the ray enters the boxes, and whether it does so between two distances.
     #[inline(always)]
-    fn entry(&self, ray: &ShortRay, nearest: f32, furthest: f32) -> Option<f32> {
-        let (mut enter, mut leave) = (nearest, furthest);
+    fn entries(
+        &self,
+        ray: &ShortRay,
+        nearest: f32,
+        furthest: f32,
+    ) -> ([f32; WIDTH], [bool; WIDTH]) {
+        let (mut enter, mut leave) = ([nearest; WIDTH], [furthest; WIDTH]);
         for axis in 0..3 {
-            let a = (self.low[axis] - ray.origin[axis]) * ray.inverse[axis];
-            let b = (self.high[axis] - ray.origin[axis]) * ray.inverse[axis];
-            let (near, far) = if a < b { (a, b) } else { (b, a) };
-            enter = if near > enter { near } else { enter };
-            leave = if far < leave { far } else { leave };
+            let (origin, inverse) = (ray.origin[axis], ray.inverse[axis]);
+            for lane in 0..WIDTH {
+                let a = (self.low[axis][lane] - origin) * inverse;
+                let b = (self.high[axis][lane] - origin) * inverse;
+                let (near, far) = if a < b { (a, b) } else { (b, a) };
+                enter[lane] = if near > enter[lane] {
+                    near
+                } else {
+                    enter[lane]
+                };
+                leave[lane] = if far < leave[lane] { far } else { leave[lane] };
+            }
         }
-        (enter <= leave).then_some(enter)
+        (
+            enter,
+            std::array::from_fn(|lane| enter[lane] <= leave[lane]),
+        )
     }
 }
 
-/// Two boxes and what is in them.
+/// What is in a box: the number of a node, or triangles.
 #[derive(Clone, Copy, Debug)]
-struct Branch {
-    bounds: [Bounds; 2],
-    children: [Child; 2],
-}
+struct Child(u32);
 
-/// What is in a box: other boxes, or triangles if `count` is not 0.
-#[derive(Clone, Copy, Debug)]
-struct Child {
-    first: u32,
-    count: u32,
+impl Child {
+    const LEAF: u32 = 1 << 31;
+    const COUNT: u32 = 28;
+
+    fn node(index: usize) -> Child {
+        Child(index as u32)
+    }
+
+    /// Up to seven triangles from `first` on.
+    fn leaf(first: usize, count: usize) -> Child {
+        Child(Child::LEAF | (count as u32) << Child::COUNT | first as u32)
+    }
+
+    #[inline(always)]
+    fn triangles(self) -> Option<std::ops::Range<usize>> {
+        let first = (self.0 & ((1 << Child::COUNT) - 1)) as usize;
+        let count = (self.0 >> Child::COUNT & 7) as usize;
+        (self.0 & Child::LEAF != 0).then_some(first..first + count)
+    }
 }
 
 /// The boxes over some triangles.
 #[derive(Debug)]
 pub(crate) struct Hierarchy {
-    branches: Vec<Branch>,
-    root: Child,
-    bounds: Bounds,
+    /// Corners of the box around everything.
+    bounds: [[f32; 3]; 2],
+    nodes: Vec<Node>,
     /// Corner and edges of each triangle, those of one box side by side.
     triangles: Vec<[DVec3; 3]>,
     /// The index of each of them as the caller counts.
@@ -163,10 +194,10 @@ impl Hierarchy {
         // Rounded outwards, as the boxes are.
         let near = (nearest as f32) * 0.999_999;
         let mut far = (furthest as f32) * 1.000_001;
-        if self.bounds.entry(&ray.short, near, far).is_none() {
+        if !self.is_near(&ray.short, near, far) {
             return;
         }
-        let mut waiting = [(0.0f32, self.root); DEEPEST];
+        let mut waiting = [(0.0f32, Child::node(0)); DEEPEST];
         let mut count = 1;
         while count > 0 {
             count -= 1;
@@ -174,63 +205,80 @@ impl Hierarchy {
             if entry > far {
                 continue;
             }
-            if child.count > 0 {
-                let range = child.first as usize..(child.first + child.count) as usize;
-                for index in range {
-                    let Some(meeting) = self.meeting(ray, index) else {
-                        continue;
-                    };
-                    if meeting.distance < nearest || meeting.distance > furthest {
-                        continue;
+            let Some(range) = child.triangles() else {
+                let node = &self.nodes[child.0 as usize];
+                let first = count;
+                let (entries, is_met) = node.entries(&ray.short, near, far);
+                for lane in 0..WIDTH {
+                    if is_met[lane] {
+                        waiting[count] = (entries[lane], node.children[lane]);
+                        count += 1;
                     }
-                    match meet(meeting) {
-                        None => return,
-                        Some(limit) => furthest = limit,
+                }
+                // The nearest one is put on top.
+                for index in first + 1..count {
+                    let mut place = index;
+                    while place > first && waiting[place].0 > waiting[place - 1].0 {
+                        waiting.swap(place, place - 1);
+                        place -= 1;
                     }
-                    far = (furthest as f32) * 1.000_001;
                 }
                 continue;
-            }
-            let branch = &self.branches[child.first as usize];
-            let [first, second] = branch
-                .bounds
-                .map(|bounds| bounds.entry(&ray.short, near, far));
-            // The nearer one is put on top.
-            let pairs = match (first, second) {
-                (Some(a), Some(b)) if a <= b => [Some((b, 1)), Some((a, 0))],
-                (a, b) => [a.map(|a| (a, 0)), b.map(|b| (b, 1))],
             };
-            for (entry, side) in pairs.into_iter().flatten() {
-                waiting[count] = (entry, branch.children[side]);
-                count += 1;
+            for index in range {
+                let Some(meeting) = self.meeting(ray, index, nearest, furthest) else {
+                    continue;
+                };
+                match meet(meeting) {
+                    None => return,
+                    Some(limit) => furthest = limit,
+                }
+                far = (furthest as f32) * 1.000_001;
             }
         }
     }
 
-    /// Where the ray's line meets a triangle (Möller & Trumbore 1997).
+    /// Whether a ray meets the box around everything: most do not, and need no list of boxes.
     #[inline(always)]
-    fn meeting(&self, ray: &Ray, index: usize) -> Option<Meeting> {
+    fn is_near(&self, ray: &ShortRay, nearest: f32, furthest: f32) -> bool {
+        let (mut enter, mut leave) = (nearest, furthest);
+        for axis in 0..3 {
+            let [a, b] = self
+                .bounds
+                .map(|corner| (corner[axis] - ray.origin[axis]) * ray.inverse[axis]);
+            let (near, far) = if a < b { (a, b) } else { (b, a) };
+            enter = if near > enter { near } else { enter };
+            leave = if far < leave { far } else { leave };
+        }
+        enter <= leave
+    }
+
+    /// Where the ray's line meets a triangle between two distances (Möller & Trumbore 1997).
+    #[inline(always)]
+    fn meeting(&self, ray: &Ray, index: usize, nearest: f64, furthest: f64) -> Option<Meeting> {
         let [corner, first, second] = self.triangles[index];
         let across = ray.direction.cross(second);
         let determinant = first.dot(across);
-        if determinant == 0.0 {
-            return None;
-        }
-        let inverse = 1.0 / determinant;
         let away = ray.origin - corner;
-        let u = away.dot(across) * inverse;
-        if !(-EDGE..=1.0 + EDGE).contains(&u) {
+        // Seen from behind all signs are turned, so that nothing is divided for triangles that are not met.
+        let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
+        let size = determinant * sign;
+        let edge = size * EDGE;
+        let u = away.dot(across) * sign;
+        if !(u >= -edge && u <= size + edge) || size == 0.0 {
             return None;
         }
         let other = away.cross(first);
-        let v = ray.direction.dot(other) * inverse;
-        if v < -EDGE || u + v > 1.0 + EDGE {
+        let v = ray.direction.dot(other) * sign;
+        if !(v >= -edge && u + v <= size + edge) {
             return None;
         }
-        Some(Meeting {
-            distance: second.dot(other) * inverse,
+        let inverse = 1.0 / size;
+        let distance = second.dot(other) * sign * inverse;
+        (distance >= nearest && distance <= furthest).then(|| Meeting {
+            distance,
             triangle: self.order[index],
-            weights: [u, v],
+            weights: [u * inverse, v * inverse],
             leaves: determinant < 0.0,
         })
     }

@@ -7,6 +7,8 @@
 //! runs are looked at: it is found on a coarse grid and followed from block to block.
 
 mod blocks;
+#[cfg(test)]
+mod tests;
 mod tetrahedra;
 
 use glam::DVec3;

@@ -112,6 +112,7 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         material: (**material).clone(),
         pixels,
         size,
+        is_view: false,
         channels,
         format,
         ranges,

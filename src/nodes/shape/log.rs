@@ -207,7 +207,11 @@ fn mesh(surface: Surface, normals: Vec<DVec3>) -> Mesh {
             side => [smooth + u32::from(side); 3],
         },
         coordinates: [0; 3],
-        chart: if *side == 6 { 0 } else { 1 + u32::from(*side) },
+        chart: if *side == 6 {
+            0
+        } else {
+            Triangle::SAWN + u32::from(*side)
+        },
     };
     let triangles = surface.triangles.iter().zip(&surface.sides).map(triangle);
     Mesh {

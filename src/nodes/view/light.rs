@@ -1,7 +1,8 @@
 //! Lights: where they are, what of them a point sees, and the sky around.
 //!
-//! Everything is sampled by patterns that are the same for every point: a spiral over the face of a light, a
-//! Fibonacci lattice over the sky. So there is no noise, and steps are smaller than a picture can show.
+//! Everything is sampled by the same patterns at every point, a spiral over the face of a light and a Fibonacci lattice
+//! over the sky, turned by an angle that is hashed from the point of the picture. So shadows have steps that are
+//! smaller than a picture can show, and these do not lie in bands.
 
 use super::record::Record;
 use super::scene::{Point, Scene};
@@ -61,14 +62,60 @@ pub(super) const SKY: &[Input] = &[
         .range(0.0, 1000.0),
 ];
 
-/// Points on the rim of a light that are asked first: if they agree, so does nearly all of it.
+/// Points on the rim of a light.
 const RIM: usize = 16;
 
-/// Points within a light.
+/// Points within a light; each `FIRST`th is asked first, and if they agree with the rim, so does nearly all of it.
 const WITHIN: usize = 256;
+const FIRST: usize = 4;
 
 /// The angle between neighbours on a spiral of even density, 2 pi over the square of the golden ratio.
 const GOLDEN: f64 = 2.399_963_229_728_653;
+
+/// Points of the unit disc at which a light is asked for.
+#[derive(Clone, Debug)]
+pub(super) struct Disc {
+    rim: Vec<[f64; 2]>,
+    within: Vec<[f64; 2]>,
+}
+
+impl Disc {
+    /// The rim in even steps, and a spiral of even density within.
+    pub(super) fn new() -> Disc {
+        let point =
+            |angle: f64, radius: f64| [radius * libm::cos(angle), radius * libm::sin(angle)];
+        let rim = |index: usize| point(index as f64 * (2.0 * PI / RIM as f64), 1.0);
+        let within = |index: usize| {
+            let radius = ((index as f64 + 0.5) / WITHIN as f64).sqrt();
+            point(index as f64 * GOLDEN, radius)
+        };
+        Disc {
+            rim: (0..RIM).map(rim).collect(),
+            within: (0..WITHIN).map(within).collect(),
+        }
+    }
+}
+
+/// How far the patterns are turned at a point of the picture: cosine and sine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn([f64; 2]);
+
+impl Turn {
+    /// The turn at (u, v): the bits mixed as in Murmur3's finish.
+    pub(super) fn at(u: f64, v: f64) -> Turn {
+        let mut bits = u.to_bits() ^ v.to_bits().rotate_left(32);
+        for factor in [0xff51_afd7_ed55_8ccd, 0xc4ce_b9fe_1a85_ec53] {
+            bits = (bits ^ (bits >> 33)).wrapping_mul(factor);
+        }
+        let angle = ((bits >> 33) as f64) * (2.0 * PI / (1u64 << 31) as f64);
+        Turn([libm::cos(angle), libm::sin(angle)])
+    }
+
+    fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [cosine, sine] = self.0;
+        [cosine * x - sine * y, sine * x + cosine * y]
+    }
+}
 
 #[derive(Clone, Copy, Debug)]
 enum Place {
@@ -164,34 +211,27 @@ impl Light {
     }
 
     /// Which part of the light a point sees, from 0 to 1.
-    pub(super) fn visibility(&self, scene: &Scene, point: &Point) -> f64 {
+    pub(super) fn visibility(&self, scene: &Scene, disc: &Disc, point: &Point, turn: &Turn) -> f64 {
         let seen = self.seen(point.place);
-        let facing = point.normal.dot(seen.direction);
-        if facing <= -seen.width {
+        if point.normal.dot(seen.direction) <= 0.0 {
+            // It lights nothing here.
             return 0.0;
         }
         let furthest = self.distance(point.place);
-        let [first, second] = perpendicular(seen.direction);
-        let is_clear = |[x, y]: [f64; 2]| {
-            let direction = seen.direction + (first * x + second * y) * seen.width;
+        let [right, up] = perpendicular(seen.direction);
+        let is_clear = |place: [f64; 2]| {
+            let [x, y] = turn.turned(place);
+            let direction = seen.direction + (right * x + up * y) * seen.width;
             let direction = direction.normalize();
             // What is below the surface's own horizon is hidden by it.
             point.face.dot(direction) > 0.0 && !scene.is_hidden(point, direction, furthest)
         };
-        if seen.width == 0.0 {
-            return f64::from(u8::from(is_clear([0.0; 2])));
+        let middle = is_clear([0.0; 2]);
+        let mut first = disc.rim.iter().chain(disc.within.iter().step_by(FIRST));
+        if seen.width == 0.0 || first.all(|place| is_clear(*place) == middle) {
+            return f64::from(u8::from(middle));
         }
-        let rim = (0..RIM)
-            .filter(|index| is_clear(on_spiral(*index, 1.0)))
-            .count();
-        if rim == 0 || rim == RIM {
-            let middle = is_clear([0.0; 2]);
-            if middle == (rim == RIM) {
-                return if middle { 1.0 } else { 0.0 };
-            }
-        }
-        let radius = |index: usize| ((index as f64 + 0.5) / WITHIN as f64).sqrt();
-        let clear = (0..WITHIN).filter(|index| is_clear(on_spiral(*index, radius(*index))));
+        let clear = disc.within.iter().filter(|place| is_clear(**place));
         clear.count() as f64 / WITHIN as f64
     }
 
@@ -205,15 +245,6 @@ impl Light {
             key.number(part);
         });
     }
-}
-
-/// A point of the unit disc: the rim in even steps, and a spiral of even density within.
-fn on_spiral(index: usize, radius: f64) -> [f64; 2] {
-    let angle = match radius {
-        1.0 => index as f64 * (2.0 * PI / RIM as f64),
-        _ => index as f64 * GOLDEN,
-    };
-    [radius * libm::cos(angle), radius * libm::sin(angle)]
 }
 
 /// Two directions at right angles to one another and to a third (Duff and others 2017).
@@ -290,12 +321,14 @@ impl Sky {
     }
 
     /// What a point sees, with nothing in the way for `None`.
-    pub(super) fn light(&self, scene: Option<&Scene>, point: &Point) -> SkyLight {
+    pub(super) fn light(&self, scene: Option<&Scene>, point: &Point, turn: &Turn) -> SkyLight {
         let mut light = SkyLight::default();
         let mut whole = 0.0;
         // The solid angle of a direction over pi: a white surface reflects 1 / pi of what comes in.
         let share = 4.0 / self.directions.len() as f64;
         for direction in &self.directions {
+            let [x, y] = turn.turned([direction.x, direction.y]);
+            let direction = &DVec3::new(x, y, direction.z);
             let facing = point.normal.dot(*direction);
             if facing <= 0.0 {
                 continue;

@@ -20,6 +20,10 @@ impl Kernel for Smooth {
         3
     }
 
+    fn mixes_charts(&self) -> bool {
+        true
+    }
+
     fn sampling(&self) -> Sampling {
         Sampling::FilteredWhereStraight {
             column: 3,

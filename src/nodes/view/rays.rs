@@ -4,7 +4,7 @@
 //! that are sampled within a pixel need to know where, but not how it is lit there.
 
 use super::camera::Camera;
-use super::light::{Light, Sky};
+use super::light::{Disc, Light, Sky, Turn};
 use super::scene::{Point, Scene};
 use crate::field::{Block, Kernel};
 use crate::geometry::hierarchy::Ray;
@@ -45,6 +45,7 @@ pub(super) struct Stage {
     pub(super) camera: Camera,
     pub(super) scene: Scene,
     pub(super) lights: Vec<Light>,
+    pub(super) disc: Disc,
     pub(super) sky: Sky,
 }
 
@@ -121,7 +122,11 @@ impl Kernel for Illumination {
 
     fn evaluate(&self, block: &mut Block<'_>) {
         let Stage {
-            scene, lights, sky, ..
+            scene,
+            lights,
+            disc,
+            sky,
+            ..
         } = &*self.0;
         each(block, |u, v, row| {
             let Some(point) = self.0.look(u, v).1 else {
@@ -129,11 +134,12 @@ impl Kernel for Illumination {
                 row[lit::OPENNESS] = NOWHERE;
                 return;
             };
-            let light = sky.light(Some(scene), &point);
+            let turn = Turn::at(u, v);
+            let light = sky.light(Some(scene), &point, &turn);
             row[lit::OPENNESS] = light.openness;
             row[lit::SKY..][..3].copy_from_slice(&light.colour);
             for (row, light) in row[lit::LIGHTS..].iter_mut().zip(lights) {
-                *row = light.visibility(scene, &point);
+                *row = light.visibility(scene, disc, &point, &turn);
             }
         });
     }

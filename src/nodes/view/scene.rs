@@ -5,7 +5,7 @@
 
 use crate::geometry::hierarchy::{Hierarchy, Meeting, Ray};
 use crate::key::{Key, KeyHasher};
-use crate::value::Mesh;
+use crate::value::{Mesh, Triangle};
 use glam::{DVec2, DVec3};
 use std::sync::{Arc, OnceLock};
 
@@ -62,9 +62,23 @@ pub(super) struct Scene {
     pub(super) margin: f64,
 }
 
-/// Whether a surface number is that of a cut face.
+/// Surface numbers of sawn faces, behind those of the cuts.
+const SAWN: u32 = 1 + MOST_CUTS as u32;
+
+/// The first surface number that bark may lie on.
+const GROWN: u32 = SAWN + 32;
+
+/// Whether a surface number is that of a face that was cut or sawn.
 pub(super) fn is_cut_face(surface: u32) -> bool {
-    surface % SURFACES >= 1 && (surface % SURFACES) as usize <= MOST_CUTS
+    (1..GROWN).contains(&(surface % SURFACES))
+}
+
+/// The surface number of a chart.
+fn surface_of(chart: u32) -> u32 {
+    match chart.checked_sub(Triangle::SAWN) {
+        Some(face) => SAWN + face % (GROWN - SAWN),
+        None => GROWN + chart % (SURFACES - GROWN),
+    }
 }
 
 impl Scene {
@@ -147,7 +161,7 @@ impl Thing {
     /// The boxes over its triangles, made when the first ray comes: a picture that is there needs none.
     fn hierarchy(&self) -> &Hierarchy {
         self.hierarchy.get_or_init(|| {
-            let corners = |triangle: &crate::value::Triangle| {
+            let corners = |triangle: &Triangle| {
                 triangle
                     .points
                     .map(|index| self.mesh.points[index as usize])
@@ -305,7 +319,7 @@ impl Thing {
             normal: towards(normal * side, face * side),
             face: face * side,
             distance: meeting.distance,
-            surface: 1 + MOST_CUTS as u32 + triangle.chart % (SURFACES - 1 - MOST_CUTS as u32),
+            surface: surface_of(triangle.chart),
             coordinates,
         }
     }

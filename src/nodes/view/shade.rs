@@ -76,7 +76,7 @@ impl Kernel for Shade {
             |first: usize, count: usize| (SEEN + first..SEEN + first + count).contains(&input);
         let materials = self.materials();
         let is_height = input >= materials && (input - materials) % MATERIAL == 3;
-        self.has_relief && (is_seen(seen::PLACE, 3) || is_seen(seen::SURFACE, 1) || is_height)
+        self.has_relief && (is_seen(seen::PLACE, 3) || is_height)
     }
 
     fn nanoseconds(&self) -> f32 {
@@ -283,13 +283,9 @@ fn many_times(colour: Vec3, openness: f32) -> Vec3 {
 }
 
 /// The normal bent by the slope of the relief (Mikkelsen 2010): from how height and place change from
-/// sample to sample, as long as the neighbours lie on the same surface.
+/// sample to sample of the same surface.
 fn bend(normal: Vec3, inputs: &[InputColumn<'_>], index: usize, height: usize) -> Vec3 {
     let change = |input: usize, axis: usize| inputs[input].spread[axis][index];
-    let surface = SEEN + seen::SURFACE;
-    if change(surface, 0) != 0.0 || change(surface, 1) != 0.0 {
-        return normal;
-    }
     let place = |axis: usize| {
         let part = |part: usize| change(SEEN + seen::PLACE + part, axis);
         Vec3::new(part(0), part(1), part(2))

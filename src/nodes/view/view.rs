@@ -6,7 +6,7 @@
 //! brighter towards white.
 
 use super::camera::{CAMERA, Camera};
-use super::light::{LIGHT, Light, SKY, Sky};
+use super::light::{Disc, LIGHT, Light, SKY, Sky, Turn};
 use super::picture::{Smooth, Tone};
 use super::rays::{Illumination, Sight, Stage, seen};
 use super::record::Record;
@@ -16,7 +16,7 @@ use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::surface::material::default_of;
-use crate::value::{Domain, MapFormat, Maps, Material, Type, Unit, Value};
+use crate::value::{Domain, MapFormat, Maps, Material, Surface, Type, Unit, Value};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -151,7 +151,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         background: inputs.colour("background").map(|part| part as f32),
         open_sky: stage
             .sky
-            .light(None, &straight_up)
+            .light(None, &straight_up, &Turn::at(0.0, 0.0))
             .colour
             .map(|part| part as f32),
         stage,
@@ -166,10 +166,15 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
             domain: Domain::Plane,
             channels: BTreeMap::from([(CHANNEL.to_owned(), picture)]),
             size: Some(pixels),
-            surface: None,
+            // Materials see no neighbours beyond the edge of a surface.
+            surface: Some(Surface {
+                tangents: None,
+                charts: vec![sight.part(seen::SURFACE, 1)],
+            }),
         },
         pixels: pixels.map(|side| side as u32),
         size: pixels,
+        is_view: true,
         channels: vec![CHANNEL.to_owned()],
         format,
         ranges: BTreeMap::new(),
@@ -219,6 +224,7 @@ fn stage(inputs: &Inputs<'_>, size: [f64; 2]) -> Result<Stage, Failure> {
         },
         camera,
         lights,
+        disc: Disc::new(),
     })
 }
 
