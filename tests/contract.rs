@@ -261,6 +261,13 @@ fn a_photograph_keeps_the_contract() {
     keeps_it_from_1024("from_a_photograph", "veneer", [180.0, 120.0], 4.0);
 }
 
+#[test]
+fn rings_of_weather_and_their_plot_keep_the_contract() {
+    keeps_it_from_1024("oxford_oak", "end_grain", [400.0, 400.0], 10.0);
+    keeps_it_from_1024("oxford_oak", "plain_sawn", [240.0, 900.0], 3.0);
+    keeps_it_from_1024("oxford_oak", "plot", [240.0, 120.0], 10.0);
+}
+
 /// Near, and not within: a ramp sees noise that has been averaged within the pixel, and cannot know how much
 /// it varied there. Without filtering it is far off.
 #[test]

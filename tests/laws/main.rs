@@ -228,7 +228,7 @@ fn every_field_has_a_name_for_each_column() {
     }
 }
 
-/// The number of channels that the outputs of a recipe name.
+/// The number of files that the outputs of a recipe write: one for each channel that is named, or one.
 fn channels(graph: &Graph) -> usize {
     let of_output = |index: &NodeIndex| {
         let node = &graph.nodes[*index];

@@ -130,12 +130,25 @@ fn sections_and_heights_are_those_of_an_independent_program() {
 
 #[test]
 fn the_great_droughts_of_oxford_are_among_its_narrowest_rings() {
-    for (species, seed) in [(None, 0), (None, 99)] {
-        let given: Vec<(&str, Value)> = species.into_iter().collect();
-        let rings = grown(&oxford(), seed, &given).unwrap();
+    let from_1900 = ("from", Value::Whole(1900));
+    let file = project_file("assets/weather/oxforddata.txt");
+    let short = read(file, std::slice::from_ref(&from_1900)).unwrap();
+    let plain = ("sunshine", Value::Toggle(false));
+    let runs = [
+        (oxford(), 0, vec![]),
+        (oxford(), 99, vec![]),
+        (oxford(), 0, vec![from_1900]),
+        (oxford(), 0, vec![plain]),
+        (short, 0, vec![]),
+    ];
+    for (climate, seed, given) in runs {
+        let rings = grown(&climate, seed, &given).unwrap();
         let widths = rings.widths();
         let mut years: Vec<i32> = (1900..=2020).collect();
-        years.sort_by(|a, b| widths[(a - 1853) as usize].total_cmp(&widths[(b - 1853) as usize]));
+        years.sort_by(|a, b| {
+            widths[(a - rings.first_year) as usize]
+                .total_cmp(&widths[(b - rings.first_year) as usize])
+        });
         println!("narrowest rings {:?}", &years[..12]);
         assert!(
             [1976, 1934, 1921]

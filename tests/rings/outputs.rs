@@ -111,6 +111,40 @@ fn a_table_replaces_nothing_that_is_read() {
     );
 }
 
+#[test]
+fn a_table_has_no_small_picture_and_is_told_as_planned() {
+    let store = Options {
+        store: Some("cache".into()),
+        ..Options::default()
+    };
+    let workshop = Workshop::new("recipes", store.clone());
+    let graph = workshop.graph(RECIPE);
+    let request = Render {
+        graph: &graph,
+        folder: "recipes/out".into(),
+        only: vec![],
+        pixels: None,
+        listener: &|_| {},
+        cancel: Cancel::new(),
+    };
+    let inputs: Arc<dyn yosegi::world::World> = Arc::new(workshop.files.clone());
+    let time = std::time::Duration::from_secs(1);
+    let pictures = workshop.engine.preview(&request, &inputs, time).unwrap();
+    assert_eq!(pictures, [Path::new("recipes/out/plot.preview.png")]);
+    workshop.engine.check(&request).unwrap();
+    // Made again and compared with the store, the table is the same.
+    workshop.run(RECIPE);
+    let verifying = Options {
+        verify: true,
+        ..store
+    };
+    let log = workshop.another(verifying).run(RECIPE);
+    assert!(
+        log.contains("written tree.csv") && log.contains("compared"),
+        "{log}"
+    );
+}
+
 /// The brightness of the plot's red at points, each a pixel of its own.
 fn red(series: &Arc<RingSeries>, points: &[[f64; 2]]) -> Vec<f32> {
     let given = vec![
