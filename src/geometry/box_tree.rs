@@ -5,6 +5,9 @@ use glam::DVec2;
 /// Items in a leaf, at most.
 const LEAF: usize = 4;
 
+/// Nodes made between two questions whether to go on.
+const AT_ONCE: usize = 1024;
+
 /// Items by their boxes.
 #[derive(Debug)]
 pub(crate) struct BoxTree {
@@ -30,8 +33,14 @@ impl Node {
 }
 
 impl BoxTree {
-    /// A tree over items, given by their lowest and highest corners.
-    pub(crate) fn new(boxes: &[[DVec2; 2]]) -> BoxTree {
+    /// A tree over items, given by their lowest and highest corners. `go_on` is asked now and then.
+    ///
+    /// # Errors
+    /// What `go_on` says.
+    pub(crate) fn new<E>(
+        boxes: &[[DVec2; 2]],
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<BoxTree, E> {
         let mut tree = BoxTree {
             nodes: vec![],
             items: (0..boxes.len() as u32).collect(),
@@ -40,6 +49,9 @@ impl BoxTree {
         let mut waiting = vec![([0, boxes.len()], None)];
         while let Some((range, parent)) = waiting.pop() {
             let index = tree.nodes.len();
+            if index.is_multiple_of(AT_ONCE) {
+                go_on()?;
+            }
             if let Some(parent) = parent {
                 let parent: &mut Node = &mut tree.nodes[parent];
                 parent.second = Some(index);
@@ -53,7 +65,7 @@ impl BoxTree {
                 waiting.push(([range[0], middle], None));
             }
         }
-        tree
+        Ok(tree)
     }
 
     fn node(&self, boxes: &[[DVec2; 2]], items: [usize; 2]) -> Node {
@@ -132,7 +144,8 @@ mod tests {
                 [low, low + 0.05 * DVec2::new(point(i, 97), point(i, 29))]
             })
             .collect();
-        let tree = BoxTree::new(&boxes);
+        let new = |boxes: &[[DVec2; 2]]| BoxTree::new(boxes, &mut || Ok::<(), ()>(())).unwrap();
+        let tree = new(&boxes);
         for at in 0..2000 {
             let point = 1.4 * DVec2::new(point(at, 7), point(at, 401)) - 0.2;
             let distance = |item: u32| {
@@ -143,6 +156,6 @@ mod tests {
             let expected = all.reduce(|best, next| if next.0 < best.0 { next } else { best });
             assert_eq!(tree.nearest(point, distance), expected.map(|it| it.1));
         }
-        assert_eq!(BoxTree::new(&[]).nearest(DVec2::ZERO, |_| 0.0), None);
+        assert_eq!(new(&[]).nearest(DVec2::ZERO, |_| 0.0), None);
     }
 }

@@ -116,7 +116,7 @@ fn expected(strip: &Strip, length: f64) -> DVec3 {
         }
     }
     let radius = strip.radius - k * low;
-    DVec3::new(radius * low.cos(), radius * low.sin(), 0.0)
+    DVec3::new(radius * libm::cos(low), radius * libm::sin(low), 0.0)
 }
 
 /// A veneer of half a millimetre of a log of half a metre: its last 16 m at 4 pixels a millimetre.

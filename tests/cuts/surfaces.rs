@@ -139,6 +139,13 @@ fn meshes_and_materials_that_cannot_be_cut_are_refused() {
         failure.message,
         "the triangles of the mesh have no area on its square"
     );
+    let mut without = (*read("it.obj", flat, &PLAIN).unwrap()).clone();
+    without.coordinates.clear();
+    let failure = on_mesh(&Arc::new(without), &[]).unwrap_err();
+    assert_eq!(
+        failure.message,
+        "the triangles of the mesh have no area on its square"
+    );
     let Value::Material(solid) = where_one_is() else {
         unreachable!()
     };

@@ -37,8 +37,14 @@ pub(crate) struct Spot {
 }
 
 impl Atlas {
-    /// Prepares a mesh that has places.
-    pub(crate) fn new(mesh: &Arc<Mesh>) -> Atlas {
+    /// Prepares a mesh that has places. `go_on` is asked now and then.
+    ///
+    /// # Errors
+    /// What `go_on` says.
+    pub(crate) fn new<E>(
+        mesh: &Arc<Mesh>,
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Atlas, E> {
         let mut entries = vec![];
         for (triangle, corners) in (0..).zip(&mesh.triangles) {
             let corners = corners
@@ -47,11 +53,11 @@ impl Atlas {
             entries.extend(repeats(corners).map(|corners| Entry { triangle, corners }));
         }
         let boxes: Vec<[DVec2; 2]> = entries.iter().map(|entry| bounds(entry.corners)).collect();
-        Atlas {
+        Ok(Atlas {
             mesh: Arc::clone(mesh),
-            tree: BoxTree::new(&boxes),
+            tree: BoxTree::new(&boxes, go_on)?,
             entries,
-        }
+        })
     }
 
     /// The triangle that shows at a point of the square, or the nearest point of one; the first of several.

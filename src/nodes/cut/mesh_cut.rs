@@ -47,19 +47,21 @@ pub static KIND: Kind = Kind {
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let mesh = inputs.mesh("mesh");
     let place = placed(inputs)?;
-    let atlas = Atlas::new(mesh);
     let no_map = || {
-        Failure::of_input(
+        let message = "the triangles of the mesh have no area on its square";
+        Failure::of_input("mesh", message).with_hint("read it with `places: box`")
+    };
+    if mesh.coordinates.is_empty() {
+        return Err(no_map());
+    }
+    let atlas = Atlas::new(mesh, &mut || build.go_on())?;
+    let side = atlas.side(&place.matrix3).ok_or_else(no_map)?;
+    if side <= 0.0 {
+        return Err(Failure::of_input(
             "mesh",
-            "the triangles of the mesh have no area on its square",
-        )
-        .with_hint("read it with `places: box`")
-    };
-    let side = match mesh.coordinates.is_empty() {
-        true => None,
-        false => atlas.side(&place.matrix3),
-    };
-    let side = side.filter(|side| *side > 0.0).ok_or_else(no_map)?;
+            "the triangles of the mesh have no area",
+        ));
+    }
     let bytes = postcard::to_stdvec(&**mesh).expect("a mesh is plain data");
     let surface = OnMesh {
         atlas,
