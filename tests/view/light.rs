@@ -4,7 +4,7 @@ use super::{EVEN, picture, recipe};
 
 /// A ball of radius 40 as a level surface.
 const BALL: &str = r#"
-    "place": position(of: solid),
+    "place": position(),
     "centred": combine(x: "= place.x / 1 mm", y: "= place.y / 1 mm", z: "= place.z / 1 mm"),
     "from_middle": separate(vector: "centred.vector"),
     "shape": log(inside: "= 40.5 - from_middle.length", low: (-50, -50, -50), high: (50, 50, 50), detail: 4),"#;
@@ -98,7 +98,7 @@ fn relief_turns_towards_the_light() {
     let lit = |height: &str| {
         let seen = picture(&recipe(
             &format!(
-                r#""place": position(of: solid), "thing": material(base_color: (0.5, 0.5, 0.5), roughness: 1, height: "{height}"),
+                r#""place": position(), "thing": material(base_color: (0.5, 0.5, 0.5), roughness: 1, height: "{height}"),
                    "shape": block(size: (40, 40), thickness: 10, rounding: 0)"#
             ),
             "pixels: (40, 40), samples: 16, sky: (strength: 0), ground: false, background: (0, 0, 0),

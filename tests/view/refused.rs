@@ -51,7 +51,7 @@ fn views_that_show_nothing_are_refused() {
 
 #[test]
 fn flat_pieces_need_a_place_on_the_mesh() {
-    let flat = r#""grain": plane_noise(size: (4, 4)), "thing": material(base_color: (0.5, 0.5, 0.5), height: "grain.value"),"#;
+    let flat = r#""grain": plane_noise(size: (4, 4, 4)), "thing": material(base_color: (0.5, 0.5, 0.5), height: "= 2 * grain.value"),"#;
     let block = format!(r#"{flat} "shape": block(size: (40, 30), thickness: 20)"#);
     assert_eq!(
         message(&block, ""),

@@ -156,7 +156,7 @@ impl Hierarchy {
     /// The first meeting with a triangle between two distances.
     pub(crate) fn first(&self, ray: &Ray, nearest: f64, furthest: f64) -> Option<Meeting> {
         let mut best: Option<Meeting> = None;
-        self.visit(ray, nearest, furthest, |meeting| {
+        self.visit::<true>(ray, nearest, furthest, |meeting| {
             let distance = meeting.distance;
             // Of two that are equally near, such as at an edge, the lower index counts.
             let is_better = best.is_none_or(|best| {
@@ -174,16 +174,17 @@ impl Hierarchy {
     /// Whether there is a triangle between two distances.
     pub(crate) fn any(&self, ray: &Ray, nearest: f64, furthest: f64) -> bool {
         let mut is_met = false;
-        self.visit(ray, nearest, furthest, |_| {
+        self.visit::<false>(ray, nearest, furthest, |_| {
             is_met = true;
             None
         });
         is_met
     }
 
-    /// Calls `meet` for meetings; it gives the distance up to which more are of interest, or `None` to stop.
+    /// Calls `meet` for meetings, near ones before far ones if they are asked for in order; it gives the distance up to
+    /// which more are of interest, or `None` to stop.
     #[inline(always)]
-    fn visit(
+    fn visit<const IN_ORDER: bool>(
         &self,
         ray: &Ray,
         nearest: f64,
@@ -216,7 +217,7 @@ impl Hierarchy {
                     }
                 }
                 // The nearest one is put on top.
-                for index in first + 1..count {
+                for index in first + 1..if IN_ORDER { count } else { 0 } {
                     let mut place = index;
                     while place > first && waiting[place].0 > waiting[place - 1].0 {
                         waiting.swap(place, place - 1);

@@ -67,7 +67,10 @@ const RIM: usize = 16;
 
 /// Points within a light; each `FIRST`th is asked first, and if they agree with the rim, so does nearly all of it.
 const WITHIN: usize = 256;
-const FIRST: usize = 4;
+const FIRST: usize = 8;
+
+/// Each of so many directions of the sky is asked first: if nothing is in the way of any, the rest is free too.
+const SKY_FIRST: usize = 4;
 
 /// The angle between neighbours on a spiral of even density, 2 pi over the square of the golden ratio.
 const GOLDEN: f64 = 2.399_963_229_728_653;
@@ -322,28 +325,35 @@ impl Sky {
 
     /// What a point sees, with nothing in the way for `None`.
     pub(super) fn light(&self, scene: Option<&Scene>, point: &Point, turn: &Turn) -> SkyLight {
+        let turned = |direction: &DVec3| {
+            let [x, y] = turn.turned([direction.x, direction.y]);
+            DVec3::new(x, y, direction.z)
+        };
+        let is_hidden = |scene: &Scene, direction: DVec3| {
+            point.normal.dot(direction) > 0.0
+                && (point.face.dot(direction) <= 0.0
+                    || scene.is_hidden(point, direction, f64::INFINITY))
+        };
+        let scene_in_the_way = scene.filter(|scene| {
+            let mut first = self.directions.iter().step_by(SKY_FIRST).map(turned);
+            first.any(|direction| is_hidden(scene, direction))
+        });
         let mut light = SkyLight::default();
         let mut whole = 0.0;
         // The solid angle of a direction over pi: a white surface reflects 1 / pi of what comes in.
         let share = 4.0 / self.directions.len() as f64;
-        for direction in &self.directions {
-            let [x, y] = turn.turned([direction.x, direction.y]);
-            let direction = &DVec3::new(x, y, direction.z);
-            let facing = point.normal.dot(*direction);
+        for direction in self.directions.iter().map(turned) {
+            let facing = point.normal.dot(direction);
             if facing <= 0.0 {
                 continue;
             }
             whole += facing;
-            let is_hidden = |scene: &Scene| {
-                point.face.dot(*direction) <= 0.0
-                    || scene.is_hidden(point, *direction, f64::INFINITY)
-            };
-            if scene.is_some_and(is_hidden) {
+            if scene_in_the_way.is_some_and(|scene| is_hidden(scene, direction)) {
                 continue;
             }
             light.openness += facing;
-            let near = scene.map_or(1.0, |scene| self.from_ground(scene, point, *direction));
-            let radiance = self.radiance(*direction);
+            let near = scene.map_or(1.0, |scene| self.from_ground(scene, point, direction));
+            let radiance = self.radiance(direction);
             for (sum, radiance) in light.colour.iter_mut().zip(radiance) {
                 *sum += radiance * (facing * share * near);
             }

@@ -251,7 +251,7 @@ impl Thing {
             return match self.span(ray, true) {
                 None => hierarchy.any(ray, 0.0, furthest),
                 Some(notch) => {
-                    hierarchy.any(ray, 0.0, furthest.min(notch.from))
+                    notch.from > 0.0 && hierarchy.any(ray, 0.0, furthest.min(notch.from))
                         || notch.to < furthest
                             && hierarchy.first(ray, notch.to, f64::INFINITY).is_some_and(
                                 |meeting| meeting.leaves || meeting.distance < furthest,

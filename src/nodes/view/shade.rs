@@ -37,6 +37,10 @@ pub(super) struct Shade {
     pub(super) open_sky: [f32; 3],
 }
 
+/// How much the brightness of shadows counts where edges are looked for: sharp ones are found, and the
+/// small steps of soft ones are not.
+const SHADOW: f32 = 0.3;
+
 /// Columns before those of what is seen, and before those of how it is lit.
 const SEEN: usize = 3;
 const LIT: usize = SEEN + seen::ALL;
@@ -138,11 +142,12 @@ impl Shade {
             light += surface.reflect(bent, towards, lit);
         }
         light *= self.exposure;
-        let brightness = lights.iter().map(|lit| {
-            luminance(lit.colour.to_array()) * lit.visibility * normal.dot(lit.direction).max(0.0)
-        });
-        let brightness = brightness.sum::<f32>() + luminance(sky.to_array());
-        [light.x, light.y, light.z, number + brightness.sqrt()]
+        let facing =
+            |lit: &Lit| luminance(lit.colour.to_array()) * normal.dot(lit.direction).max(0.0);
+        let whole: f32 = lights.iter().map(facing).sum();
+        let lit: f32 = lights.iter().map(|lit| facing(lit) * lit.visibility).sum();
+        let shadow = (lit + luminance(sky.to_array())).sqrt();
+        [light.x, light.y, light.z, number + whole + SHADOW * shadow]
     }
 
     /// The lights as they reach a place.
@@ -172,7 +177,7 @@ impl Shade {
         };
         let shaded = background * share;
         let brightness = luminance(share.to_array()).max(0.0);
-        [shaded.x, shaded.y, shaded.z, 0.5 * brightness.sqrt()]
+        [shaded.x, shaded.y, shaded.z, SHADOW * brightness.sqrt()]
     }
 
     /// What the surface reflects of the sky.
