@@ -5,12 +5,14 @@
 
 #[path = "support/clock.rs"]
 mod clock;
+#[path = "support/control.rs"]
+mod control;
 
 use clock::{median, seconds};
+use control::{control, wall};
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
 use yosegi::engine::{Cancel, Engine, Event, Options, Render};
 use yosegi::graph::{Graph, Settings, load_text};
 use yosegi::world::Memory;
@@ -62,31 +64,6 @@ fn render(engine: &Engine, graph: &Graph, side: u32) {
         cancel: Cancel::new(),
     };
     black_box(engine.render(&request).expect("the board can be rendered"));
-}
-
-/// Multiplications and additions that stay in registers, as many on each of some threads.
-fn control(threads: usize) {
-    let work = || {
-        let mut sums = [1.0f32; 64];
-        for _ in 0..4_000_000 {
-            for sum in &mut sums {
-                *sum = *sum * 0.999 + 0.001;
-            }
-            black_box(&mut sums);
-        }
-    };
-    std::thread::scope(|scope| {
-        (1..threads).for_each(|_| {
-            scope.spawn(work);
-        });
-        work();
-    });
-}
-
-fn wall(work: impl FnOnce()) -> f64 {
-    let start = Instant::now();
-    work();
-    start.elapsed().as_secs_f64()
 }
 
 fn main() {

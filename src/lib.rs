@@ -18,6 +18,7 @@ pub mod field;
 pub mod geometry;
 pub mod graph;
 pub mod key;
+mod lanes;
 pub mod node;
 pub mod nodes;
 pub mod output;

@@ -44,7 +44,11 @@ struct Branch {
 
 impl Tree {
     pub(crate) fn new(model: &GrowthModel) -> Tree {
-        let all = model.curve.pieces();
+        let all = model
+            .trunk
+            .curve()
+            .expect("the scene's trunk is curved")
+            .pieces();
         let ends = all[1..].iter().map(|piece| piece.start as f32);
         let pieces: Vec<Piece> = all
             .iter()

@@ -115,6 +115,7 @@ fn skeleton(nodes: usize, branches: usize) -> Skeleton {
             height: HEIGHT * share,
             direction: DVec3::new(libm::cos(azimuth), libm::sin(azimuth), 0.5).normalize(),
             thickness: Thickness::Speed(0.5),
+            length: None,
         }
     };
     Skeleton {

@@ -3,7 +3,9 @@
 use super::memory::Structure;
 use crate::key::{Key, KeyHasher};
 use crate::node::Kind;
-use crate::value::{Climate, ColourPattern, Material, Mesh, RingSeries, Skeleton, Type, Value};
+use crate::value::{
+    Climate, ColourPattern, Material, Mesh, Patches, RingSeries, Skeleton, Type, Value,
+};
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -16,7 +18,8 @@ pub(super) fn key(value: &Value) -> Key {
         | Value::ColourPattern(_)
         | Value::Climate(_)
         | Value::RingSeries(_)
-        | Value::Mesh(_) => {
+        | Value::Mesh(_)
+        | Value::Patches(_) => {
             key.text(value.type_name()).bytes(&structure_bytes(value));
         }
         Value::Material(material) => add_material(&mut key, material),
@@ -52,6 +55,9 @@ fn add_material(key: &mut KeyHasher, material: &Material) {
     material.size.iter().flatten().for_each(|length| {
         key.number(*length);
     });
+    if let Some(surface) = &material.surface {
+        surface.add_to_key(key);
+    }
 }
 
 /// The bytes of a structure; empty for values that are not structures.
@@ -62,6 +68,7 @@ fn structure_bytes(value: &Value) -> Vec<u8> {
         Value::Climate(climate) => postcard::to_stdvec(&**climate),
         Value::RingSeries(series) => postcard::to_stdvec(&**series),
         Value::Mesh(mesh) => postcard::to_stdvec(&**mesh),
+        Value::Patches(patches) => postcard::to_stdvec(&**patches),
         _ => Ok(vec![]),
     };
     bytes.expect("plain data always has bytes")
@@ -110,6 +117,7 @@ fn decode_value(value_type: Type, bytes: &[u8]) -> Option<Value> {
         Type::Climate => sound(bytes, Climate::is_sound).map(Value::Climate),
         Type::RingSeries => sound(bytes, RingSeries::is_sound).map(Value::RingSeries),
         Type::Mesh => sound(bytes, Mesh::is_sound).map(Value::Mesh),
+        Type::Patches => sound(bytes, Patches::is_sound).map(Value::Patches),
         _ => None,
     }
 }

@@ -109,7 +109,7 @@ impl Output<'_> {
             None => &maps.channels[0],
         };
         let (field, kind) = self.field(maps, channel);
-        let program = Program::compile(&[field]);
+        let program = Program::compile_in_charts(&[field], maps.material.charts());
         self.check_program(&program)?;
         let full = self.pixels(maps);
         let mut side = COARSEST;

@@ -1,6 +1,6 @@
 //! Targets: what the pixels of an output lie on.
 
-use crate::field::Target;
+use crate::field::{Target, remainder};
 use crate::key::{Key, KeyHasher};
 
 /// A flat piece seen from the front: u runs to the right from 0 at the left edge, v runs up from 0 at the
@@ -41,5 +41,12 @@ impl Target for FlatPiece {
         }
         v.fill((self.size[1] - y * down) as f32);
         w.fill(0.0);
+    }
+
+    fn write_remainders(&self, x: f64, _: f64, step: f64, row: &mut [f32]) {
+        let across = self.size[0] / f64::from(self.pixels[0]);
+        for (index, value) in (0i32..).zip(row) {
+            *value = remainder((x + f64::from(index) * step) * across);
+        }
     }
 }

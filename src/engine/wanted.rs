@@ -189,6 +189,9 @@ impl Output<'_> {
                 .key(target.key())
                 .text(maps.format.name())
                 .text(channel);
+            maps.material.charts().iter().for_each(|chart| {
+                key.text("chart").key(chart.key());
+            });
             key.whole(i64::from(self.engine.options.filtering));
             key.whole(kind.samples() as i64);
             maps.ranges
@@ -212,10 +215,7 @@ impl Output<'_> {
     pub(super) fn field(&self, maps: &Maps, channel: &str) -> (Field, MapKind) {
         if channel == "normal" {
             let node: Arc<str> = self.name().into();
-            return (
-                normal_from_height(&node, &maps.material.channels["height"]),
-                MapKind::Normal,
-            );
+            return (normal_from_height(&node, &maps.material), MapKind::Normal);
         }
         let field = maps.material.channels[channel].clone();
         let kind = if field.width() == 3 {

@@ -87,7 +87,8 @@ impl Output<'_> {
         let field = |map: &&WantedMap| self.field(maps, &map.channel).0;
         let fields: Vec<Field> = missing.iter().map(field).collect();
         let cancel = &self.engine.cancel;
-        let program = Program::compile_until(&fields, cancel).ok_or(RunError::Cancelled)?;
+        let program = Program::compile_until(&fields, maps.material.charts(), cancel)
+            .ok_or(RunError::Cancelled)?;
         self.check_program(&program)?;
         let contents: Vec<Contents> = missing.iter().map(|_| Contents::default()).collect();
         let sheets: io::Result<Vec<Sheet>> = missing

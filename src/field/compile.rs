@@ -4,11 +4,13 @@
 //! ([`Field::at`]) opens a new domain, whose position is three columns of the old one. Columns get
 //! slots by liveness, so a program needs as many buffers as are alive at once.
 
+use super::charts::Charts;
+use super::within::Within;
 use super::{Field, Kernel, Operation, Sampling};
 use crate::cancel::Cancel;
 use crate::key::{Key, KeyHasher};
 use std::collections::{HashMap, HashSet};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::Arc;
 
 /// A linear list of column operations that gives the columns of some fields.
 #[derive(Debug)]
@@ -17,6 +19,8 @@ pub struct Program {
     pub(super) slots: usize,
     /// Slots that hold one number throughout, with that number.
     pub(super) constants: Vec<(usize, f32)>,
+    /// The slot of what rounding took from the position, if anything reads it.
+    pub(super) remainder: Option<usize>,
     pub(super) outputs: Vec<Vec<usize>>,
     pub(super) margin: usize,
     pub(super) key: Key,
@@ -26,7 +30,17 @@ pub struct Program {
 #[derive(Debug)]
 pub(super) enum Step {
     /// The change of a column from sample to sample.
-    Spread { of: usize, along: [usize; 2] },
+    Spread {
+        of: usize,
+        along: [usize; 2],
+        /// Which neighbours are of one chart, where there are charts.
+        joins: Option<[usize; 2]>,
+    },
+    /// Which samples are of one chart with the next, along rows and columns.
+    Joins {
+        charts: Vec<usize>,
+        joins: [usize; 2],
+    },
     /// A kernel.
     Kernel(Box<KernelStep>),
 }
@@ -43,35 +57,10 @@ pub(super) struct KernelStep {
     pub(super) outputs: Vec<usize>,
     /// Gives the outputs inside single pixels, where the kernel cannot filter.
     pub(super) within: Option<Within>,
+    /// The charts of the samples, if that is where the outputs are averaged.
+    pub(super) charts: Vec<usize>,
     /// How many samples beyond the tile the outputs are read.
     pub(super) margin: usize,
-}
-
-/// The program that gives one field at its samples' own positions, compiled when it is first needed:
-/// each holds the whole way to its field, so a long chain of kernels that cannot filter would grow with
-/// the square of its length.
-#[derive(Debug)]
-pub(super) struct Within {
-    field: Field,
-    program: OnceLock<Program>,
-    compiling: Mutex<()>,
-}
-
-impl Within {
-    /// `None` if the run is cancelled before it is compiled.
-    pub(super) fn program(&self, cancel: Option<&Cancel>) -> Option<&Program> {
-        if let Some(program) = self.program.get() {
-            return Some(program);
-        }
-        // One thread compiles, the others wait for it.
-        let _compiling = self.compiling.lock();
-        if self.program.get().is_none() {
-            let field = std::slice::from_ref(&self.field);
-            let compiled = Compiler::new(false).compile(field, cancel)?;
-            let _ = self.program.set(compiled);
-        }
-        self.program.get()
-    }
 }
 
 /// Slots 0 to 2 hold the position of the samples.
@@ -80,13 +69,23 @@ pub(super) const POSITION: [usize; 3] = [0, 1, 2];
 impl Program {
     /// Compiles a program whose outputs are the columns of `fields`, in order.
     pub fn compile(fields: &[Field]) -> Program {
-        let program = Compiler::new(true).compile(fields, None);
+        Program::compile_in_charts(fields, &[])
+    }
+
+    /// As [`Program::compile`], of a piece on which samples are neighbours only if all of `charts` have the same
+    /// values at both: spreads do not reach from one to the other, nor do means unless they differ in fractions only.
+    pub fn compile_in_charts(fields: &[Field], charts: &[Field]) -> Program {
+        let program = Compiler::new(true, charts).compile(fields, None);
         program.expect("nobody cancels it")
     }
 
-    /// As [`Program::compile`]; `None` if the run is cancelled meanwhile.
-    pub(crate) fn compile_until(fields: &[Field], cancel: &Cancel) -> Option<Program> {
-        Compiler::new(true).compile(fields, Some(cancel))
+    /// As [`Program::compile_in_charts`]; `None` if the run is cancelled meanwhile.
+    pub(crate) fn compile_until(
+        fields: &[Field],
+        charts: &[Field],
+        cancel: &Cancel,
+    ) -> Option<Program> {
+        Compiler::new(true, charts).compile(fields, Some(cancel))
     }
 
     /// Identifies the program: two with the same key do the same.
@@ -103,8 +102,9 @@ struct Place {
     outer: Option<(usize, Field)>,
 }
 
-struct Compiler {
+pub(super) struct Compiler {
     supersampling: bool,
+    charts: Charts,
     places: Vec<Place>,
     place_of: HashMap<(usize, Key), usize>,
     columns_of: HashMap<(Key, usize), Vec<usize>>,
@@ -112,12 +112,13 @@ struct Compiler {
     constant_of: HashMap<u32, usize>,
     constant_columns: HashSet<usize>,
     constants: Vec<(usize, f32)>,
+    remainder: Option<usize>,
     steps: Vec<Step>,
     columns: usize,
 }
 
 impl Compiler {
-    fn new(supersampling: bool) -> Compiler {
+    pub(super) fn new(supersampling: bool, charts: &[Field]) -> Compiler {
         let root = Place {
             key: KeyHasher::new("root", 1).finish(),
             position: POSITION,
@@ -125,6 +126,7 @@ impl Compiler {
         };
         Compiler {
             supersampling,
+            charts: Charts::of(charts),
             places: vec![root],
             place_of: HashMap::new(),
             columns_of: HashMap::new(),
@@ -132,15 +134,18 @@ impl Compiler {
             constant_of: HashMap::new(),
             constant_columns: HashSet::new(),
             constants: Vec::new(),
+            remainder: None,
             steps: Vec::new(),
             columns: POSITION.len(),
         }
     }
 
     /// `None` if the run is cancelled meanwhile.
-    fn compile(mut self, fields: &[Field], cancel: Option<&Cancel>) -> Option<Program> {
+    pub(super) fn compile(mut self, fields: &[Field], cancel: Option<&Cancel>) -> Option<Program> {
         let mut key = KeyHasher::new("program", 1);
         key.whole(i64::from(self.supersampling));
+        self.charts.add_to_key(&mut key);
+        self.divide_into_charts(cancel)?;
         let outputs: Option<Vec<Vec<usize>>> = fields
             .iter()
             .map(|field| {
@@ -153,11 +158,29 @@ impl Compiler {
             steps: self.steps,
             slots: self.columns,
             constants: self.constants,
+            remainder: self.remainder,
             outputs: outputs?,
             margin,
             key: key.finish(),
         };
         Some(super::slots::assign(program))
+    }
+
+    /// Finds out which samples are of one chart; `None` if the run is cancelled meanwhile.
+    fn divide_into_charts(&mut self, cancel: Option<&Cancel>) -> Option<()> {
+        for chart in self.charts.fields.clone() {
+            let columns = self.columns(&chart, cancel)?;
+            self.charts.columns.extend(columns);
+        }
+        if !self.charts.columns.is_empty() {
+            let (charts, joins) = (
+                self.charts.columns.clone(),
+                [self.new_column(), self.new_column()],
+            );
+            self.steps.push(Step::Joins { charts, joins });
+            self.charts.joins = Some(joins);
+        }
+        Some(())
     }
 
     /// The columns of a field in the root place, with everything it depends on.
@@ -187,7 +210,7 @@ impl Compiler {
     /// The dependencies of a field that have no columns yet.
     fn missing(&mut self, field: &Field, place: usize) -> Vec<(Field, usize)> {
         let wanted = match &field.0.operation {
-            Operation::Constant(_) | Operation::Position => vec![],
+            Operation::Constant(_) | Operation::Position | Operation::Remainder => vec![],
             Operation::Part { of, .. } => vec![(of.clone(), place)],
             Operation::Kernel { inputs, .. } => {
                 inputs.iter().map(|input| (input.clone(), place)).collect()
@@ -230,6 +253,7 @@ impl Compiler {
                 values.iter().map(|value| self.constant(*value)).collect()
             }
             Operation::Position => self.places[place].position.to_vec(),
+            Operation::Remainder => vec![self.remainder(place)],
             Operation::Part { of, first } => {
                 self.columns_of[&(of.key(), place)][*first..*first + field.width()].to_vec()
             }
@@ -265,23 +289,28 @@ impl Compiler {
             .map(|(column, of)| kernel.reads_spread(column).then(|| self.spread(*of)))
             .collect();
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
-        let within = self.may_be_supersampled(&*kernel, &inputs).then(|| Within {
-            field: self.seen_from_root(field, place),
-            program: OnceLock::new(),
-            compiling: Mutex::new(()),
+        let within = self.may_be_supersampled(&*kernel, &inputs).then(|| {
+            Within::new(
+                self.seen_from_root(field, place),
+                self.charts.fields.clone(),
+            )
         });
-        let key = KeyHasher::new("step", 1)
-            .key(field.key())
-            .key(self.places[place].key)
-            .finish();
+        let mut key = KeyHasher::new("step", 1);
+        key.key(field.key()).key(self.places[place].key);
+        self.charts.add_to_key(&mut key);
+        let charts = match within {
+            Some(_) => self.charts.columns.clone(),
+            None => vec![],
+        };
         let step = KernelStep {
             kernel,
             node,
-            key,
+            key: key.finish(),
             inputs,
             spreads,
             outputs: outputs.clone(),
             within,
+            charts,
             margin: 0,
         };
         self.steps.push(Step::Kernel(Box::new(step)));
@@ -315,7 +344,8 @@ impl Compiler {
             return *known;
         }
         let along = [self.new_column(), self.new_column()];
-        self.steps.push(Step::Spread { of, along });
+        let joins = self.charts.joins;
+        self.steps.push(Step::Spread { of, along, joins });
         self.spread_of.insert(of, along);
         along
     }
@@ -329,6 +359,16 @@ impl Compiler {
         self.constants.push((column, value));
         self.constant_columns.insert(column);
         column
+    }
+
+    /// The column of what rounding took from the position: of a place that a field opens nothing is known.
+    fn remainder(&mut self, place: usize) -> usize {
+        if self.places[place].outer.is_some() {
+            return self.constant(0.0);
+        }
+        let known = self.remainder.unwrap_or_else(|| self.new_column());
+        self.remainder = Some(known);
+        known
     }
 
     fn new_column(&mut self) -> usize {

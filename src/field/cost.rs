@@ -41,14 +41,23 @@ pub(super) fn assign_margins(steps: &mut [Step], columns: usize) -> usize {
     let mut margins = vec![0; columns];
     for step in steps.iter_mut().rev() {
         match step {
-            Step::Spread { of, along } => {
+            Step::Spread { of, along, joins } => {
                 let distance = margins[along[0]].max(margins[along[1]]) + 1;
-                margins[*of] = margins[*of].max(distance);
+                for read in joins.iter().flatten().chain([&*of]) {
+                    margins[*read] = margins[*read].max(distance);
+                }
+            }
+            Step::Joins { charts, joins } => {
+                let distance = margins[joins[0]].max(margins[joins[1]]);
+                for chart in charts {
+                    margins[*chart] = margins[*chart].max(distance);
+                }
             }
             Step::Kernel(step) => {
                 let read = step.outputs.iter().map(|column| margins[*column]);
                 step.margin = read.max().unwrap_or(0);
                 let spreads = step.spreads.iter().flatten().flatten();
+                let spreads = spreads.chain(&step.charts);
                 spreads.for_each(|column| margins[*column] = margins[*column].max(step.margin));
                 for (input, column) in step.inputs.iter().enumerate() {
                     let distance = step.margin + usize::from(looks_around(step, input));

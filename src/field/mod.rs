@@ -4,6 +4,7 @@
 //! together with all the other fields of an output, into one linear list of column operations.
 //! Two fields with the same [`Field::key`] have the same values, so they are computed once.
 
+mod charts;
 mod compile;
 mod cost;
 mod kernel;
@@ -13,10 +14,12 @@ mod slots;
 mod spread;
 mod supersample;
 mod transpose;
+mod within;
 
 pub use compile::Program;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};
 pub use run::{ColumnCache, Columns, RunContext, Scratch, Work};
+pub(crate) use samples::remainder;
 pub use samples::{PixelGrid, Samples, Target};
 pub(crate) use transpose::transposed;
 
@@ -44,6 +47,8 @@ enum Operation {
     Constant(Vec<f32>),
     /// The position of the sample in its domain, in mm.
     Position,
+    /// What rounding took from the first part of the position.
+    Remainder,
     /// Some columns of a wider field.
     Part { of: Field, first: usize },
     /// A kernel over the columns of other fields.
@@ -83,6 +88,13 @@ impl Field {
             .text(&domain.to_string())
             .finish();
         Field::new(key, 3, domain, Operation::Position)
+    }
+
+    /// What rounding to f32 took from the first part of the position on a plane: the sum of both is exact along pieces
+    /// of hundreds of metres. Where a piece has been moved by another field it is 0.
+    pub fn remainder() -> Field {
+        let key = KeyHasher::new("remainder", 1).finish();
+        Field::new(key, 1, Domain::Plane, Operation::Remainder)
     }
 
     /// The columns that `kernel` computes from `inputs`, on behalf of the node called `node`.
@@ -192,7 +204,7 @@ impl Operation {
     /// Moves the fields this operation depends on into `fields`.
     fn release_into(&mut self, fields: &mut Vec<Field>) {
         match std::mem::replace(self, Operation::Position) {
-            Operation::Constant(_) | Operation::Position => {}
+            Operation::Constant(_) | Operation::Position | Operation::Remainder => {}
             Operation::Part { of, .. } => fields.push(of),
             Operation::Kernel { inputs, .. } => fields.extend(inputs),
             Operation::At { field, position } => fields.extend([field, position]),

@@ -1,7 +1,7 @@
 //! Runs a program over one block of samples.
 
 use super::compile::{KernelStep, POSITION, Program, Step};
-use super::{Block, InputColumn, Kernel, Samples, spread, supersample};
+use super::{Block, InputColumn, Kernel, Samples, charts, spread, supersample};
 use crate::cancel::Cancel;
 use crate::key::{Key, KeyHasher};
 use fearless_simd::Level;
@@ -107,6 +107,9 @@ impl Scratch {
         for (slot, column) in POSITION.into_iter().zip(position) {
             self.slots[slot] = column;
         }
+        if let Some(slot) = program.remainder {
+            samples.write_remainders(&mut self.slots[slot], padded);
+        }
     }
 }
 
@@ -124,8 +127,22 @@ impl Program {
             }
             match (step, stored) {
                 _ if !needed => {}
-                (Step::Spread { of, along }, _) => {
-                    write_spread(scratch, samples, context, *of, *along);
+                (Step::Spread { of, along, joins }, _) => {
+                    let shape = shape(samples, context);
+                    write_columns(scratch, *along, |scratch, columns| {
+                        let values = scratch.column(*of);
+                        match joins.map(|joins| joins.map(|slot| scratch.column(slot))) {
+                            None => spread::write_spread(values, shape, columns),
+                            Some(joins) => charts::write_spread(values, joins, shape, columns),
+                        }
+                    });
+                }
+                (Step::Joins { charts, joins }, _) => {
+                    let shape = shape(samples, context);
+                    write_columns(scratch, *joins, |scratch, columns| {
+                        let charts = charts.iter().map(|slot| scratch.column(*slot));
+                        charts::write_joins(&charts.collect::<Vec<_>>(), shape, columns);
+                    });
                 }
                 (Step::Kernel(step), Stored::Columns(columns)) => load(scratch, step, columns),
                 (Step::Kernel(step), Stored::Under(key)) => {
@@ -205,21 +222,23 @@ enum Stored {
     Columns(Columns),
 }
 
-fn write_spread(
+/// Width and height of the grids in which samples have neighbours.
+fn shape(samples: &Samples<'_>, context: &RunContext<'_>) -> [usize; 2] {
+    match context.filtering {
+        true => samples.shape(),
+        false => [1, 1],
+    }
+}
+
+/// Lets `write` fill two columns, while it reads the others.
+fn write_columns(
     scratch: &mut Scratch,
-    samples: &Samples<'_>,
-    context: &RunContext<'_>,
-    of: usize,
-    along: [usize; 2],
+    slots: [usize; 2],
+    write: impl FnOnce(&Scratch, &mut [Vec<f32>; 2]),
 ) {
-    let mut columns = along.map(|slot| std::mem::take(&mut scratch.slots[slot]));
-    let shape = if context.filtering {
-        samples.shape()
-    } else {
-        [1, 1]
-    };
-    spread::write_spread(&scratch.slots[of], shape, &mut columns);
-    for (slot, column) in along.into_iter().zip(columns) {
+    let mut columns = slots.map(|slot| std::mem::take(&mut scratch.slots[slot]));
+    write(scratch, &mut columns);
+    for (slot, column) in slots.into_iter().zip(columns) {
         scratch.slots[slot] = column;
     }
 }

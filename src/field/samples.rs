@@ -14,6 +14,12 @@ pub trait Target: Send + Sync {
     /// `step` pixels to the right. The centre of the first pixel is (0.5, 0.5), y points down. Defined
     /// outside the picture as well, since margins reach there.
     fn write_row(&self, x: f64, y: f64, step: f64, row: [&mut [f32]; 3]);
+
+    /// Writes what rounding to f32 took from the first part of the positions of a row; 0 where it is not known.
+    fn write_remainders(&self, x: f64, y: f64, step: f64, row: &mut [f32]) {
+        let _ = (x, y, step);
+        row.fill(0.0);
+    }
 }
 
 /// Equal grids of samples laid one after the other: one for a tile, many small ones where single
@@ -73,6 +79,15 @@ impl PixelGrid {
     /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Pixel coordinates of the first sample of every row of every grid.
+    fn rows(&self) -> impl Iterator<Item = [f64; 2]> {
+        let rows = move |[x, y]: &[f64; 2]| {
+            let (x, y) = (*x, *y);
+            (0..self.height).map(move |row| [x, y + row as f64 * self.step])
+        };
+        self.origins.iter().flat_map(rows)
     }
 
     /// Pixel coordinates of sample `index`.
@@ -164,14 +179,35 @@ impl Samples<'_> {
             column[length..].fill(last);
         }
     }
+
+    /// Writes what rounding took from the first part of the positions, padded with copies of the last.
+    pub(super) fn write_remainders(&self, column: &mut Vec<f32>, padded: usize) {
+        let length = self.len();
+        column.resize(padded, 0.0);
+        match self {
+            Samples::Grid { target, grid } => {
+                for (row, [x, y]) in column.chunks_exact_mut(grid.width).zip(grid.rows()) {
+                    target.write_remainders(x, y, grid.step, row);
+                }
+            }
+            Samples::Points(points) => {
+                for (value, point) in column.iter_mut().zip(*points) {
+                    *value = remainder(point[0]);
+                }
+            }
+        }
+        let last = column[length.saturating_sub(1)];
+        column[length..].fill(last);
+    }
+}
+
+/// What rounding to f32 takes from a number.
+pub(crate) fn remainder(number: f64) -> f32 {
+    (number - f64::from(number as f32)) as f32
 }
 
 fn write_grid(target: &dyn Target, grid: &PixelGrid, [u, v, w]: &mut [Vec<f32>; 3]) {
-    let rows = grid
-        .origins
-        .iter()
-        .flat_map(|[x, y]| (0..grid.height).map(move |row| (*x, y + row as f64 * grid.step)));
-    for (index, (x, y)) in rows.enumerate() {
+    for (index, [x, y]) in grid.rows().enumerate() {
         let row = index * grid.width..(index + 1) * grid.width;
         target.write_row(
             x,

@@ -5,7 +5,8 @@ use super::compile::{POSITION, Program, Step};
 /// Rewrites a program whose columns are all different into one that reuses buffers.
 pub(super) fn assign(mut program: Program) -> Program {
     let last_read = last_reads(&program);
-    let mut slots = Slots::new(program.slots, &program.constants);
+    let mut slots = Slots::new(&program);
+    program.remainder = program.remainder.map(|column| slots.of[column]);
     program
         .constants
         .iter_mut()
@@ -54,6 +55,7 @@ fn last_reads(program: &Program) -> Vec<usize> {
         .flatten()
         .chain(pinned)
         .chain(&POSITION)
+        .chain(&program.remainder)
     {
         last[*column] = usize::MAX;
     }
@@ -68,7 +70,8 @@ struct Slots {
 }
 
 impl Slots {
-    fn new(columns: usize, constants: &[(usize, f32)]) -> Slots {
+    fn new(program: &Program) -> Slots {
+        let columns = program.slots;
         let mut slots = Slots {
             of: vec![usize::MAX; columns],
             free: vec![],
@@ -77,7 +80,8 @@ impl Slots {
         };
         POSITION
             .iter()
-            .chain(constants.iter().map(|(column, _)| column))
+            .chain(program.constants.iter().map(|(column, _)| column))
+            .chain(&program.remainder)
             .for_each(|c| slots.take(*c));
         slots
     }
@@ -99,10 +103,15 @@ impl Slots {
 impl Step {
     pub(super) fn reads(&self) -> Vec<usize> {
         match self {
-            Step::Spread { of, .. } => vec![*of],
+            Step::Spread { of, joins, .. } => {
+                let joins = joins.iter().flatten();
+                joins.chain([of]).copied().collect()
+            }
+            Step::Joins { charts, .. } => charts.clone(),
             Step::Kernel(step) => {
                 let spreads = step.spreads.iter().flatten().flatten();
-                step.inputs.iter().chain(spreads).copied().collect()
+                let read = step.inputs.iter().chain(&step.charts);
+                read.chain(spreads).copied().collect()
             }
         }
     }
@@ -110,6 +119,7 @@ impl Step {
     pub(super) fn writes(&self) -> Vec<usize> {
         match self {
             Step::Spread { along, .. } => along.to_vec(),
+            Step::Joins { joins, .. } => joins.to_vec(),
             Step::Kernel(step) => step.outputs.clone(),
         }
     }
@@ -117,12 +127,15 @@ impl Step {
     fn rename(&mut self, slot_of: &[usize]) {
         let rename = |column: &mut usize| *column = slot_of[*column];
         match self {
-            Step::Spread { of, along } => {
+            Step::Joins { charts, joins } => charts.iter_mut().chain(joins).for_each(rename),
+            Step::Spread { of, along, joins } => {
                 rename(of);
+                joins.iter_mut().flatten().for_each(rename);
                 along.iter_mut().for_each(rename);
             }
             Step::Kernel(step) => {
                 step.inputs.iter_mut().for_each(rename);
+                step.charts.iter_mut().for_each(rename);
                 step.spreads.iter_mut().flatten().flatten().for_each(rename);
                 step.outputs.iter_mut().for_each(rename);
             }

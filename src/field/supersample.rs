@@ -1,9 +1,10 @@
 //! Supersampling: where a kernel cannot filter, the smallest program that gives its outputs is run
 //! on a fixed grid inside the sample, and the results are averaged.
 
-use super::compile::{KernelStep, Within};
+use super::compile::KernelStep;
 use super::run::{RunContext, Scratch};
 use super::spread::{self, Inside};
+use super::within::Within;
 use super::{PixelGrid, Samples, Sampling};
 use fearless_simd::{Level, dispatch};
 
@@ -47,10 +48,26 @@ pub(super) fn supersample(
         if context.is_cancelled() {
             break;
         }
+        let charts = |index: usize| (within.output(&inner, 1 + index, 0), step.charts[index]);
+        let charts: Vec<(&[f32], usize)> = (0..step.charts.len()).map(charts).collect();
         for (column, output) in outputs.iter_mut().enumerate() {
             let values = within.output(&inner, 0, column);
-            for (values, pixel) in values.chunks_exact(area).zip(pixels) {
-                output[*pixel as usize] = mean_inside(values, within.margin());
+            for (index, (values, pixel)) in values.chunks_exact(area).zip(pixels).enumerate() {
+                let mean = match charts.is_empty() {
+                    true => Some(mean_inside(values, within.margin())),
+                    false => {
+                        let is_of_chart = |sample: usize| {
+                            charts.iter().all(|(inside, slot)| {
+                                inside[index * area + sample].floor()
+                                    == scratch.column(*slot)[*pixel as usize].floor()
+                            })
+                        };
+                        mean_of_chart(values, within.margin(), is_of_chart)
+                    }
+                };
+                if let Some(mean) = mean {
+                    output[*pixel as usize] = mean;
+                }
             }
         }
     }
@@ -107,4 +124,21 @@ fn mean_inside(values: &[f32], margin: usize) -> f32 {
     let rows = values.chunks_exact(width).skip(margin).take(SIDE);
     let sum: f32 = rows.flat_map(|row| &row[margin..margin + SIDE]).sum();
     sum / (SIDE * SIDE) as f32
+}
+
+/// The mean of those of a pixel's samples that are of its chart; `None` if there are none.
+fn mean_of_chart(
+    values: &[f32],
+    margin: usize,
+    is_of_chart: impl Fn(usize) -> bool,
+) -> Option<f32> {
+    let width = SIDE + 2 * margin;
+    let rows = (margin..margin + SIDE).map(|row| row * width + margin);
+    let samples = rows.flat_map(|start| start..start + SIDE);
+    let (mut sum, mut count) = (0.0, 0u8);
+    for sample in samples.filter(|sample| is_of_chart(*sample)) {
+        sum += values[sample];
+        count += 1;
+    }
+    (count > 0).then(|| sum / f32::from(count))
 }

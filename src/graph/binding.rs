@@ -105,7 +105,7 @@ impl Linker<'_, '_> {
         )))
     }
 
-    /// A map from names to numbers and colours.
+    /// A map from names to numbers, colours and, by links, vectors.
     fn channels(&mut self, tree: &Tree, input: &Input) -> Option<Source> {
         let Shape::Map(entries) = &tree.shape else {
             return None;
@@ -126,7 +126,7 @@ impl Linker<'_, '_> {
         (channels.len() == entries.len()).then_some(Source::Channels(channels))
     }
 
-    /// A number or a colour, whichever it is.
+    /// A number or a colour, whichever it is, or a link to one or to a vector.
     fn channel(&mut self, name: &str, tree: &Tree, input: &Input) -> Option<Source> {
         let colour = Slot {
             name,
@@ -165,7 +165,11 @@ impl Linker<'_, '_> {
             return self.arithmetic(tree, text, input, colour.of(input.value_type));
         }
         let found = self.find(&text.value, tree.span.clone())?;
-        if !matches!(found.output.value_type, Type::Number(_) | Type::Colour) {
+        let fits = matches!(
+            found.output.value_type,
+            Type::Number(_) | Type::Colour | Type::Vector(Unit::One)
+        );
+        if !fits {
             return self.refuse_type(&found, &text.value, tree.span.clone(), number);
         }
         self.constant(&found, &text.value, tree.span.clone(), input)?;

@@ -92,6 +92,7 @@ impl<'c> Reader<'c> {
             | Type::Climate
             | Type::RingSeries
             | Type::Mesh
+            | Type::Patches
             | Type::Material
             | Type::Maps => self.mismatch(tree, slot),
         }

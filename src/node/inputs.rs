@@ -5,7 +5,8 @@ use super::ledger::{Budget, Ledger};
 use crate::cancel::Cancel;
 use crate::field::{Field, Kernel};
 use crate::value::{
-    Climate, ColourPattern, Domain, FileContents, Material, Mesh, RingSeries, Skeleton, Value,
+    Climate, ColourPattern, Domain, FileContents, Material, Mesh, Patches, RingSeries, Skeleton,
+    Value,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -195,6 +196,8 @@ impl<'a> Inputs<'a> {
         ring_series, Value::RingSeries(series) => series, &'a Arc<RingSeries>;
         /// A mesh.
         mesh, Value::Mesh(mesh) => mesh, &'a Arc<Mesh>;
+        /// Patches.
+        patches, Value::Patches(patches) => patches, &'a Arc<Patches>;
         /// A material.
         material, Value::Material(material) => material, &'a Arc<Material>;
     }

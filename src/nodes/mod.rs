@@ -8,7 +8,9 @@ pub mod output;
 mod picture;
 mod random;
 pub mod rings;
+pub mod shape;
 pub mod surface;
+pub mod view;
 pub mod wood;
 
 use crate::node::Kind;
@@ -18,8 +20,19 @@ pub static KINDS: &[&Kind] = &[
     &wood::skeleton::KIND,
     &wood::skeleton_from_file::KIND,
     &wood::growth_field::KIND,
+    &wood::straight_growth_field::KIND,
+    &rings::ring_series::KIND,
+    &wood::virtual_energy::KIND,
+    &wood::fibre_field::KIND,
     &surface::material::KIND,
+    &shape::mesh_from_file::KIND,
+    &shape::patches_from_file::KIND,
+    &shape::nurbs_surface::KIND,
+    &shape::mesh_from_patches::KIND,
     &cut::slice_cut::KIND,
+    &cut::rotary_cut::KIND,
+    &cut::mesh_cut::KIND,
+    &cut::patch_cut::KIND,
     &output::maps::KIND,
     &surface::mix::KIND,
     &wood::colour_pattern::KIND,
@@ -39,10 +52,14 @@ pub static KINDS: &[&Kind] = &[
     &field::adjust_colour::KIND,
     &field::transform::KIND,
     &field::transform_field::KIND,
+    &field::sample_at::KIND,
     &field::image_from_file::KIND,
     &surface::blend::KIND,
     &rings::weather::KIND,
     &rings::growth_model::KIND,
+    &shape::block::KIND,
+    &shape::log::KIND,
+    &view::view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
 ];

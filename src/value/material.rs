@@ -2,6 +2,7 @@
 
 use super::Domain;
 use crate::field::Field;
+use crate::key::KeyHasher;
 use std::collections::BTreeMap;
 
 /// A bundle of fields, by channel name.
@@ -17,12 +18,62 @@ pub struct Material {
     pub channels: BTreeMap<String, Field>,
     /// Width and height of the piece in mm, once it has been cut.
     pub size: Option<[f64; 2]>,
+    /// Where the piece lies in space, if it was cut for a curved surface.
+    pub surface: Option<Surface>,
+}
+
+/// How a piece lies on a surface in space.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// How the surface runs at each point of the piece: the change of its place along u and along v, in mm for each mm of
+    /// the piece, six columns. `None` if it is not known.
+    pub tangents: Option<Field>,
+    /// Fields that are the same only within a chart: points with different values are no neighbours, however near they lie
+    /// on the piece. The whole part says which chart it is; a fraction marks parts of one chart, over which differences
+    /// do not reach either, but a pixel may be the mean of both.
+    pub charts: Vec<Field>,
+}
+
+impl Surface {
+    /// The surface of a piece that was moved: each of its points shows what was at `position`. Nothing lies any more
+    /// where the surface has it.
+    pub(crate) fn at(&self, position: &Field) -> Surface {
+        Surface {
+            tangents: None,
+            charts: self.charts.iter().map(|chart| chart.at(position)).collect(),
+        }
+    }
+
+    /// The surface of a piece that is made of two: the shape of the first, with the charts of both.
+    pub(crate) fn of_both(one: Option<&Surface>, other: Option<&Surface>) -> Option<Surface> {
+        let (Some(one), Some(other)) = (one, other) else {
+            return one.or(other).cloned();
+        };
+        let mut both = one.clone();
+        let is_new = |chart: &&Field| one.charts.iter().all(|known| known.key() != chart.key());
+        both.charts
+            .extend(other.charts.iter().filter(is_new).cloned());
+        Some(both)
+    }
+
+    /// Adds what the surface is to a key.
+    pub(crate) fn add_to_key(&self, key: &mut KeyHasher) {
+        key.text("surface").whole(self.charts.len() as i64);
+        self.charts.iter().chain(&self.tangents).for_each(|chart| {
+            key.key(chart.key());
+        });
+    }
 }
 
 /// Channels that hold directions in the material: they turn with it, and a mean of them has length 1.
 const DIRECTION_CHANNELS: [&str; 1] = ["fibre"];
 
 impl Material {
+    /// The charts of the piece; none if it is flat.
+    pub fn charts(&self) -> &[Field] {
+        self.surface.as_ref().map_or(&[], |surface| &surface.charts)
+    }
+
     /// Whether a channel holds directions: three columns under a name that stands for one.
     pub fn is_direction(channel: &str, field: &Field) -> bool {
         field.width() == 3 && DIRECTION_CHANNELS.contains(&channel)

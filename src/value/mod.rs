@@ -4,6 +4,7 @@ mod climate;
 mod colour_pattern;
 mod material;
 mod mesh;
+mod patches;
 mod ring_series;
 mod skeleton;
 mod table;
@@ -11,8 +12,10 @@ mod types;
 
 pub use climate::{Climate, Month};
 pub use colour_pattern::{AfterEnd, ColourPattern};
-pub use material::{FileType, MapFormat, Maps, Material, SampleType};
+pub use material::{FileType, MapFormat, Maps, Material, SampleType, Surface};
 pub use mesh::{Mesh, Triangle};
+pub(crate) use patches::HIGHEST_DEGREE;
+pub use patches::{Patch, Patches};
 pub use ring_series::RingSeries;
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
 pub use table::Table;
@@ -83,6 +86,8 @@ pub enum Value {
     RingSeries(Arc<RingSeries>),
     /// Triangles in space.
     Mesh(Arc<Mesh>),
+    /// Curved surfaces in space.
+    Patches(Arc<Patches>),
     /// A bundle of fields.
     Material(Arc<Material>),
     /// Maps to be written.
@@ -140,10 +145,37 @@ impl Value {
             | Value::Climate(_)
             | Value::RingSeries(_)
             | Value::Mesh(_)
+            | Value::Patches(_)
             | Value::Material(_)
             | Value::Maps(_)
             | Value::Table(_) => key,
         };
+    }
+
+    /// The part of a record called `name`, if it is there.
+    pub fn part(&self, name: &str) -> Option<&Value> {
+        let Value::Record(parts) = self else {
+            return None;
+        };
+        let found = parts.iter().find(|(part, _)| *part == name);
+        found.map(|(_, value)| value)
+    }
+
+    /// The number, if it is a number or a whole number.
+    pub fn as_number(&self) -> Option<f64> {
+        match self {
+            Value::Number(number) => Some(*number),
+            Value::Whole(number) => Some(*number as f64),
+            _ => None,
+        }
+    }
+
+    /// The vector, if it is one.
+    pub fn as_vector(&self) -> Option<DVec3> {
+        match self {
+            Value::Vector(vector) => Some(*vector),
+            _ => None,
+        }
     }
 
     /// The name of the value's type in messages.
@@ -168,6 +200,7 @@ impl Value {
             Value::Climate(_) => "climate",
             Value::RingSeries(_) => "ring series",
             Value::Mesh(_) => "mesh",
+            Value::Patches(_) => "patches",
             Value::Material(_) => "material",
             Value::Maps(_) => "maps",
             Value::Table(_) => "table",

@@ -47,13 +47,19 @@ impl Skeleton {
 impl Branch {
     fn is_sound(&self) -> bool {
         let length = self.direction.length();
-        (length - 1.0).abs() < 1e-6 && self.thickness.is_sound()
+        (length - 1.0).abs() < 1e-6
+            && self.thickness.is_sound()
+            && self.length.is_none_or(is_length)
     }
+}
+
+/// Whether a number can be a length in mm.
+fn is_length(length: f64) -> bool {
+    length > 0.0 && length <= LARGEST
 }
 
 impl Thickness {
     fn is_sound(self) -> bool {
-        let is_length = |length: f64| length > 0.0 && length <= LARGEST;
         match self {
             Thickness::Speed(speed) => is_length(speed),
             Thickness::HalfWidth {
@@ -73,6 +79,8 @@ pub struct Branch {
     pub direction: DVec3,
     /// How thick the branch grows.
     pub thickness: Thickness,
+    /// Distance in mm from the start to the tip, if it is known.
+    pub length: Option<f64>,
 }
 
 /// How thick a branch grows.
@@ -102,6 +110,7 @@ mod tests {
                 height: 50.0,
                 direction: DVec3::X,
                 thickness: Thickness::Speed(1.0),
+                length: None,
             }],
         };
         change(&mut skeleton);
@@ -111,7 +120,8 @@ mod tests {
     #[test]
     fn only_what_nodes_make_is_sound() {
         assert!(skeleton(|_| {}).is_sound());
-        let unsound: [fn(&mut Skeleton); 12] = [
+        let unsound: [fn(&mut Skeleton); 13] = [
+            |it| it.branches[0].length = Some(0.0),
             |it| it.trunk.clear(),
             |it| it.trunk.truncate(1),
             |it| it.trunk[1].z = 0.0,

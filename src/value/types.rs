@@ -92,6 +92,8 @@ pub enum Type {
     RingSeries,
     /// Triangles in space.
     Mesh,
+    /// Curved surfaces in space, each over a square.
+    Patches,
     /// A bundle of fields.
     Material,
     /// Files to be written, maps or a table: what an output of a recipe is.
@@ -108,7 +110,12 @@ impl Type {
     pub fn is_structure(self) -> bool {
         matches!(
             self,
-            Type::Skeleton | Type::ColourPattern | Type::Climate | Type::RingSeries | Type::Mesh
+            Type::Skeleton
+                | Type::ColourPattern
+                | Type::Climate
+                | Type::RingSeries
+                | Type::Mesh
+                | Type::Patches
         )
     }
 }
@@ -140,6 +147,7 @@ impl fmt::Display for Type {
             Type::Climate => write!(formatter, "climate"),
             Type::RingSeries => write!(formatter, "ring series"),
             Type::Mesh => write!(formatter, "mesh"),
+            Type::Patches => write!(formatter, "patches"),
             Type::Material => write!(formatter, "material"),
             Type::Maps => write!(formatter, "maps"),
         }

@@ -45,7 +45,7 @@ fn trunk_gradient(model: &GrowthModel) -> f64 {
         thickening,
         ..
     } = model.settings;
-    1.0 / elongation + (1.0 + model.curve.steepest()) / thickening
+    1.0 / elongation + (1.0 + model.trunk.curve().unwrap().steepest()) / thickening
 }
 
 #[test]

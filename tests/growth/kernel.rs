@@ -1,6 +1,7 @@
 //! The kernel against the model in double precision, and what its results do not depend on.
 
-use super::{Grown, field, grow, grow_at, levels, rounded, scattered, settings, tree};
+use super::levels::levels;
+use super::{Grown, field, grow, grow_at, rounded, scattered, settings, tree};
 use fearless_simd::Level;
 use glam::DVec3;
 use proptest::prelude::*;
@@ -29,7 +30,7 @@ fn model(skeleton: &Skeleton, sharpness: f64, reach: Option<Reach>) -> GrowthMod
 /// Times within 1e-5 of the largest, shares within 2e-5, outside a ball of a thousandth of the trunk's
 /// length round every start.
 fn assert_agrees(model: &GrowthModel, points: &[DVec3]) {
-    let [lowest, highest] = model.curve.heights();
+    let [lowest, highest] = model.trunk.heights();
     let outside = |point: &&DVec3| {
         let far = |start: DVec3| start.distance(**point) > 1e-3 * (highest - lowest);
         model.branches.iter().all(|branch| far(branch.start))
@@ -94,6 +95,7 @@ prop_compose! {
             height: low + at * (high - low),
             direction: DVec3::from(*direction).normalize_or(DVec3::X),
             thickness: Thickness::Speed(*speed),
+            length: None,
         }).collect();
         let tangents = if local { Tangents::Local } else { Tangents::Natural };
         Skeleton { trunk, tangents, branches }
@@ -114,7 +116,7 @@ proptest! {
         let reach = reach.map(|(along, across)| Reach { along, across });
         let settings = GrowthSettings { elongation, thickening, sharpness, reach };
         let model = GrowthModel::new(&skeleton, settings).unwrap();
-        let [low, high] = model.curve.heights();
+        let [low, high] = model.trunk.heights();
         let points = scattered(400, DVec3::new(-200.0, -200.0, low - 100.0), DVec3::new(200.0, 200.0, high + 200.0));
         assert_agrees(&model, &points);
     }
@@ -248,6 +250,7 @@ fn bushy(count: usize) -> Skeleton {
             height: 100.0 + 2200.0 * share,
             direction: DVec3::new(libm::cos(azimuth), libm::sin(azimuth), 0.4).normalize(),
             thickness: Thickness::Speed(0.3 + 0.2 * share),
+            length: None,
         }
     };
     Skeleton {

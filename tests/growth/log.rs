@@ -101,7 +101,7 @@ fn inside_a_knot_the_branch_rules_and_between_knots_the_trunk() {
             .all(|share| *share > 0.9)
     );
     let clear: Vec<DVec3> = (0..400)
-        .map(|i| rounded(model.curve.at(10.0 * f64::from(i)) + DVec3::new(0.0, 100.0, 0.0)))
+        .map(|i| rounded(model.trunk.at(10.0 * f64::from(i)) + DVec3::new(0.0, 100.0, 0.0)))
         .filter(|point| model.terms(*point).branches.iter().all(Option::is_none))
         .collect();
     assert!(clear.len() > 20);

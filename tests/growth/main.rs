@@ -5,7 +5,11 @@ mod continuity;
 mod kernel;
 mod log;
 mod nodes;
+mod straight;
 mod vectors;
+
+#[path = "../support/levels.rs"]
+mod levels;
 
 use fearless_simd::Level;
 use glam::DVec3;
@@ -116,6 +120,7 @@ fn tree() -> Skeleton {
         height,
         direction: DVec3::from(direction).normalize(),
         thickness: Thickness::Speed(speed),
+        length: None,
     };
     Skeleton {
         trunk: nodes.map(DVec3::from).to_vec(),
@@ -126,16 +131,4 @@ fn tree() -> Skeleton {
             branch(1210.0, (0.3, -1.0, 0.6), 0.8),
         ],
     }
-}
-
-/// Every level of vector instructions that this machine has.
-fn levels() -> Vec<Level> {
-    let best = Level::new();
-    let mut levels = vec![Level::baseline(), best];
-    #[cfg(target_arch = "x86_64")]
-    {
-        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
-        levels.extend(best.as_avx2().map(Level::Avx2));
-    }
-    levels
 }

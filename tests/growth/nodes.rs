@@ -96,6 +96,7 @@ fn literals_become_a_skeleton() {
         height,
         direction: DVec3::new(0.6, 0.0, 0.8),
         thickness,
+        length: None,
     };
     assert_eq!(skeleton.trunk.len(), 3);
     assert_eq!(skeleton.tangents, Tangents::Local);

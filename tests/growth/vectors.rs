@@ -36,6 +36,7 @@ fn skeleton(vectors: &Value, tangents: Tangents) -> Skeleton {
         height: number(&value[0]),
         direction: point(&value[1]).normalize(),
         thickness: Thickness::Speed(number(&value[2])),
+        length: None,
     };
     let branches = vectors["branches_zb_dir_vb"]
         .as_array()

@@ -117,6 +117,7 @@ fn with_fibre(direction: [f64; 3]) -> Value {
         domain: Domain::Everywhere,
         channels: BTreeMap::from(channels),
         size: None,
+        surface: None,
     }))
 }
 

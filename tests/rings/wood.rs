@@ -24,6 +24,7 @@ fn skeleton(branches: bool) -> Skeleton {
         height,
         direction: DVec3::from(direction).normalize(),
         thickness: Thickness::Speed(speed),
+        length: None,
     };
     let branches = match branches {
         false => vec![],
@@ -90,7 +91,7 @@ fn uniform() -> impl FnMut() -> f64 {
 /// The point at a height, in a direction and at a distance from the trunk's curve, as the kernel receives it.
 fn point(model: &GrowthModel, height: f64, direction: f64, distance: f64) -> DVec3 {
     let out = DVec3::new(cos(direction), sin(direction), 0.0);
-    let point = model.curve.at(height) + distance * out;
+    let point = model.trunk.at(height) + distance * out;
     DVec3::new(point.x, point.y, height).as_vec3().as_dvec3()
 }
 
@@ -111,7 +112,7 @@ fn rings_have_the_radii_of_the_formula_at_a_thousand_heights() {
         let radius = ((rings.areas[ring - 1] - rings.area_at(reached)).max(0.0) / PI).sqrt();
         let direction = TAU * uniform();
         let exact =
-            model.curve.at(height) + radius * DVec3::new(cos(direction), sin(direction), 0.0);
+            model.trunk.at(height) + radius * DVec3::new(cos(direction), sin(direction), 0.0);
         let found = model.trunk_time(exact);
         assert!(
             (found - ring as f64).abs() < 1e-7,
@@ -159,7 +160,7 @@ fn rings_close_at_the_tip_like_stacked_cones() {
     let tips: Vec<DVec3> = rings
         .heights
         .iter()
-        .map(|height| model.curve.at(*height))
+        .map(|height| model.trunk.at(*height))
         .collect();
     for (year, tip) in (1..).zip(&tips) {
         assert!(

@@ -32,6 +32,8 @@ impl Workshop {
             "spruce_bar/spruce_bar.png",
             "measured_tree/tree.csv",
             "weather/oxforddata.txt",
+            "spot/spot.obj",
+            "teapot/teapot.txt",
         ] {
             files.insert(Path::new(folder).join(asset), asset_bytes(asset));
         }

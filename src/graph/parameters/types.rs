@@ -11,7 +11,7 @@ use crate::node::interned;
 use crate::value::{Type, Unit, Value};
 
 /// The types of both, then those that only inputs of compounds have.
-const TYPES: [&str; 15] = [
+const TYPES: [&str; 16] = [
     "number",
     "whole",
     "toggle",
@@ -26,6 +26,7 @@ const TYPES: [&str; 15] = [
     "climate",
     "ring_series",
     "mesh",
+    "patches",
     "colour_pattern",
 ];
 
@@ -63,6 +64,7 @@ pub(super) fn read(
         "climate" => Type::Climate,
         "ring_series" => Type::RingSeries,
         "mesh" => Type::Mesh,
+        "patches" => Type::Patches,
         _ => Type::ColourPattern,
     })
 }

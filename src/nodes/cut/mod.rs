@@ -1,3 +1,8 @@
 //! Cuts: they make a flat piece out of a solid.
 
+pub mod mesh_cut;
+pub mod patch_cut;
+mod placed;
+pub mod rotary_cut;
 pub mod slice_cut;
+mod surface;

@@ -8,14 +8,15 @@
 //! - `plain_sawn`: the plane stands `offset` mm away from the axis; rings form cathedrals;
 //! - `end_grain`: the plane lies across the trunk; rings are circles.
 //!
-//! `turn` says from which side: at 0 the piece's width runs along +x.
+//! `turn` says from which side: at 0 the piece's width runs along +x. `placed` moves, turns and scales the whole piece, which then has the size
+//! that it has in the solid; one that becomes oblique is shown as if its sides stood at right angles.
 
+use super::placed::{PLACED, piece, placed};
 use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
-use crate::value::{Domain, Material, Type, Unit, Value};
+use crate::value::{Domain, Type, Unit, Value};
 use glam::DVec3;
-use std::sync::Arc;
 
 /// Cuts a flat piece out of a solid material.
 pub static KIND: Kind = Kind {
@@ -67,6 +68,7 @@ pub static KIND: Kind = Kind {
             "Width and height of the piece.",
         )
         .range(0.001, 100_000.0),
+        PLACED,
     ],
     outputs: &[Output::field("piece", Type::Material, "The flat piece.").on(Domain::Plane)],
     example: r##"(nodes: {
@@ -79,26 +81,22 @@ pub static KIND: Kind = Kind {
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let size = inputs.pair("size");
+    let place = placed(inputs)?;
     let plane = Plane::new(inputs)?;
+    let corner = plane.centre - plane.across * (0.5 * size[0]) - plane.along * (0.5 * size[1]);
+    // The piece is measured in mm as it lies in the solid.
+    let factor = |side: DVec3| place.transform_vector3(side).length() / side.length();
+    let factors = [plane.across, plane.along].map(factor);
     let position = build.kernel(
         Affine {
-            corner: plane.centre - plane.across * (0.5 * size[0]) - plane.along * (0.5 * size[1]),
-            across: plane.across,
-            along: plane.along,
+            corner: place.transform_point3(corner),
+            across: place.transform_vector3(plane.across) / factors[0],
+            along: place.transform_vector3(plane.along) / factors[1],
         },
         vec![Field::position(Domain::Plane)],
     );
-    let solid = inputs.material("of");
-    let channels = solid
-        .channels
-        .iter()
-        .map(|(name, field)| (name.clone(), field.at(&position)))
-        .collect();
-    Ok(vec![Value::Material(Arc::new(Material {
-        domain: Domain::Plane,
-        channels,
-        size: Some(size),
-    }))])
+    let size = [size[0] * factors[0], size[1] * factors[1]];
+    Ok(vec![piece(inputs.material("of"), &position, size)])
 }
 
 /// Where the saw runs.

@@ -41,7 +41,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 
 /// Three columns side by side.
 #[derive(Debug)]
-struct Join;
+pub(in crate::nodes) struct Join;
 
 impl Kernel for Join {
     fn add_to_key(&self, key: &mut KeyHasher) {

@@ -7,13 +7,13 @@ use crate::field::{Block, Field, Kernel, Sampling};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs};
 use crate::value::{Domain, Type, Unit};
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// Raised when a result changes.
 const VERSION: i64 = 1;
 
 /// How far things move.
-pub(super) const MOVE: Input = Input::new(
+pub(in crate::nodes) const MOVE: Input = Input::new(
     "move",
     Type::Vector(Unit::Millimetre),
     "How far it moves along x, y and z.",
@@ -22,7 +22,7 @@ pub(super) const MOVE: Input = Input::new(
 .range(-1e7, 1e7);
 
 /// How far things turn.
-pub(super) const TURN: Input = Input::new(
+pub(in crate::nodes) const TURN: Input = Input::new(
     "turn",
     Type::Vector(Unit::Degree),
     "How far it turns about x, then y, then z, against the clock seen from the axis's tip; flat pieces turn about z.",
@@ -31,7 +31,7 @@ pub(super) const TURN: Input = Input::new(
 .range(-36_000.0, 36_000.0);
 
 /// How much things grow.
-pub(super) const SCALE: Input = Input::new(
+pub(in crate::nodes) const SCALE: Input = Input::new(
     "scale",
     Type::Vector(Unit::One),
     "How many times larger it becomes along its own axes; negative parts mirror it.",
@@ -40,7 +40,7 @@ pub(super) const SCALE: Input = Input::new(
 .range(-1e4, 1e4);
 
 /// What stays where it is.
-pub(super) const PIVOT: Input = Input::new(
+pub(in crate::nodes) const PIVOT: Input = Input::new(
     "pivot",
     Type::Vector(Unit::Millimetre),
     "The point that turning and scaling leave where it is.",
@@ -53,7 +53,7 @@ const SMALLEST: f64 = 1e-4;
 
 /// A moved, turned and scaled domain.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Placement {
+pub(in crate::nodes) struct Placement {
     domain: Domain,
     turn: DMat3,
     scale: DVec3,
@@ -67,8 +67,18 @@ impl Placement {
     /// # Errors
     /// Factors near 0, and on a flat piece what would lead out of it.
     pub(super) fn read(inputs: &Inputs<'_>, domain: Domain) -> Result<Placement, Failure> {
-        let [moved, turn, scale, pivot] =
-            ["move", "turn", "scale", "pivot"].map(|name| inputs.vector(name));
+        let parts = ["move", "turn", "scale", "pivot"].map(|name| inputs.vector(name));
+        Placement::of(parts, domain)
+    }
+
+    /// The placement by `move`, `turn`, `scale` and `pivot`, in this order.
+    ///
+    /// # Errors
+    /// As [`Placement::read`].
+    pub(in crate::nodes) fn of(
+        [moved, turn, scale, pivot]: [DVec3; 4],
+        domain: Domain,
+    ) -> Result<Placement, Failure> {
         if scale.abs().min_element() < SMALLEST {
             let message = format!(
                 "a part of `scale` is {}: nothing would be left",
@@ -100,6 +110,13 @@ impl Placement {
             pivot,
             moved,
         })
+    }
+
+    /// Where each point of the thing appears.
+    pub(in crate::nodes) fn affine(&self) -> DAffine3 {
+        let matrix = self.turn * DMat3::from_diagonal(self.scale);
+        let translation = self.pivot + self.moved - matrix * self.pivot;
+        DAffine3::from_mat3_translation(matrix, translation)
     }
 
     /// The points of the thing that appear at each point.

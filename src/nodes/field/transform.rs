@@ -51,6 +51,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     };
     Ok(vec![Value::Material(Arc::new(Material {
         channels: material.channels.iter().map(moved).collect(),
+        surface: material.surface.as_ref().map(|it| it.at(&position)),
         ..Material::clone(material)
     }))])
 }

@@ -60,8 +60,9 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 
 /// Adds three columns times `amount` to three columns of positions.
 #[derive(Debug)]
-struct Offset {
-    amount: DVec3,
+pub(in crate::nodes) struct Offset {
+    /// Distance in mm where the three columns are 1.
+    pub(in crate::nodes) amount: DVec3,
 }
 
 impl Kernel for Offset {

@@ -108,13 +108,7 @@ pub static KIND: Kind = Kind {
         )
         .optional()
         .range(0.0, 2.0),
-        Input::new(
-            "allometry",
-            Type::Vector(Unit::One),
-            "A in m/cm^h, h and H* in m: height by diameter; else the species' one, or (1.2, 1, 35).",
-        )
-        .optional()
-        .range(1e-3, 1e3),
+        ALLOMETRY,
         Input::new("seed", Type::Whole, "Another seed is another tree.").default("0"),
     ],
     outputs: &[Output::new("rings", Type::RingSeries, "The tree's years.")],
@@ -124,6 +118,15 @@ pub static KIND: Kind = Kind {
     })",
     build,
 };
+
+/// The input `allometry`; `ring_series` has the same.
+pub(super) const ALLOMETRY: Input = Input::new(
+    "allometry",
+    Type::Vector(Unit::One),
+    "A in m/cm^h, h and H* in m: height by diameter; else the species' one, or (1.2, 1, 35).",
+)
+.optional()
+.range(1e-3, 1e3);
 
 /// How much a species slows down with age.
 const SLOWDOWN: f64 = 0.4;
@@ -136,9 +139,7 @@ const PERSISTENCE: f64 = 0.4;
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let climate = inputs.climate("climate");
-    let species = inputs
-        .get("species")
-        .and_then(|_| species_of(inputs.choice("species")));
+    let species = species(inputs);
     let (first_year, growths) = growths(inputs, climate)?;
     build.go_on()?;
     let of_species = |name: &str, species: Option<f64>, otherwise: f64| match inputs.get(name) {
@@ -149,7 +150,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         ring_width: of_species("ring_width", species.map(|it| it.ring_width), RING_WIDTH),
         slowdown: of_species("slowdown", species.map(|_| SLOWDOWN), 0.0),
     };
-    let allometry = allometry(inputs, species);
+    let allometry = allometry(inputs);
     let growths = of_one_tree(inputs, build, species, &thickening, growths);
     let series = series(first_year, thickening.areas(&growths), &allometry);
     if !series.is_sound() {
@@ -157,6 +158,12 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         return Err(Failure::new(message).with_hint("choose fewer years"));
     }
     Ok(vec![Value::RingSeries(Arc::new(series))])
+}
+
+/// The species, if the recipe names one.
+fn species(inputs: &Inputs<'_>) -> Option<&'static Species> {
+    inputs.get("species")?;
+    species_of(inputs.choice("species"))
 }
 
 /// The first year, and the growth of each year in this weather.
@@ -229,9 +236,10 @@ fn window(inputs: &Inputs<'_>) -> Result<Window, Failure> {
     })
 }
 
-fn allometry(inputs: &Inputs<'_>, species: Option<&Species>) -> Allometry {
+/// The allometry that the recipe states, or that of its species.
+pub(super) fn allometry(inputs: &Inputs<'_>) -> Allometry {
     if inputs.get("allometry").is_none() {
-        return species.map_or(CONIFER, |species| species.allometry);
+        return species(inputs).map_or(CONIFER, |species| species.allometry);
     }
     let [factor, exponent, most] = inputs.vector("allometry").to_array();
     Allometry {

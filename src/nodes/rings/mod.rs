@@ -2,4 +2,5 @@
 
 pub mod growth_model;
 pub mod ring_plot;
+pub mod ring_series;
 pub mod weather;

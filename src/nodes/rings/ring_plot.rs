@@ -48,5 +48,6 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         domain: Domain::Plane,
         channels: with_defaults([("base_color".to_owned(), colour)]),
         size: Some(size),
+        surface: None,
     }))])
 }

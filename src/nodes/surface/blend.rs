@@ -21,7 +21,7 @@ use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output, common_domain};
 use crate::nodes::field::threshold::transition;
-use crate::value::{Material, Type, Unit, Value};
+use crate::value::{Material, Surface, Type, Unit, Value};
 use std::sync::Arc;
 
 /// Blends two materials.
@@ -108,6 +108,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         domain: common_domain(channels.values()),
         channels,
         size,
+        surface: Surface::of_both(a.surface.as_ref(), b.surface.as_ref()),
     }))])
 }
 

@@ -59,7 +59,7 @@ pub static KIND: Kind = Kind {
         Input::new(
             "extras",
             Type::Channels,
-            "Channels of your own, such as `growth_time`.",
+            "Channels of your own, such as `growth_time`; vectors by links, such as `fibre`.",
         )
         .per_point()
         .optional(),
@@ -88,7 +88,7 @@ pub const STANDARD_CHANNELS: [&str; 6] = [
 
 /// What a channel of `width` columns is where a material does not have it: the default of the input, 0 or black for
 /// extras.
-pub(super) fn default_of(channel: &str, width: usize) -> Field {
+pub(in crate::nodes) fn default_of(channel: &str, width: usize) -> Field {
     let declared = match KIND.input(channel).map(|(_, input)| input.presence) {
         Some(Presence::Default(literal)) => literal.parse().ok(),
         _ => None,
@@ -123,5 +123,6 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         domain,
         channels,
         size: None,
+        surface: None,
     }))])
 }

@@ -44,6 +44,7 @@ use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::field::threshold::below;
 use crate::value::{Domain, RingSeries, Type, Unit, Value};
+use std::sync::Arc;
 
 /// Growth time along a curved skeleton.
 pub static KIND: Kind = Kind {
@@ -52,65 +53,8 @@ pub static KIND: Kind = Kind {
     about: "When the wood at each point grew, along a curved trunk and its branches, by speeds or by the rings of a tree.",
     source: "Momoi & Takatera 2014, eqs. (9)-(18); Shibasaki & Aoyama, eqs. (1), (2) (rings); exponent, reach and share are \
              our own construction",
-    inputs: &[
-        Input::new("skeleton", Type::Skeleton, "Trunk and branches."),
-        Input::new(
-            "rings",
-            Type::RingSeries,
-            "How thick and tall the trunk was in each year, instead of `thickening`.",
-        )
-        .optional(),
-        Input::number(
-            "elongation",
-            Unit::MillimetrePerYear,
-            "How fast trunk and branches grow long; with `rings` only branches, else as fast as the tree on average.",
-        )
-        .optional()
-        .range(1.0, 1e5),
-        Input::number(
-            "thickening",
-            Unit::MillimetrePerYear,
-            "How fast the trunk's radius grows; needed unless there are `rings`.",
-        )
-        .optional()
-        .range(1e-3, 1e4),
-        Input::number(
-            "age",
-            Unit::Year,
-            "Age of the tree, where its bark is; else that of its `rings`, or there is no bark.",
-        )
-        .optional()
-        .range(0.0, 1e5),
-        Input::number(
-            "sharpness",
-            Unit::One,
-            "Blend of trunk and branches: 1 soft, 2 paper, 16 hard.",
-        )
-        .default("2")
-        .range(1.0, 16.0),
-        Input::new(
-            "reach",
-            Type::Pair(Unit::Millimetre),
-            "Where a branch's influence ends, along and across it; fades from half of that on.",
-        )
-        .optional()
-        .range(1e-3, 1e6),
-    ],
-    outputs: &[
-        Output::field("time", Type::Number(Unit::Year), "Growth time.").on(Domain::Solid),
-        Output::field(
-            "branch",
-            Type::Number(Unit::One),
-            "0 in the trunk's wood, near 1 in a knot.",
-        )
-        .on(Domain::Solid),
-        Output::field(
-            "inside",
-            Type::Number(Unit::One),
-            "1 within the bark and 0 outside; 1 everywhere if the tree has no age.",
-        )
-        .on(Domain::Solid),
-    ],
+    inputs: INPUTS,
+    outputs: &[TIME, BRANCH, INSIDE],
     example: "(nodes: {
         \"tree\": skeleton(
             trunk: [(0, 0, 0), (12, 4, 900), (-6, 9, 2100)],
@@ -121,7 +65,78 @@ pub static KIND: Kind = Kind {
     build,
 };
 
+/// What grows, and how; `straight_growth_field` has the same inputs.
+pub(super) const INPUTS: &[Input] = &[
+    Input::new("skeleton", Type::Skeleton, "Trunk and branches."),
+    Input::new(
+        "rings",
+        Type::RingSeries,
+        "How thick and tall the trunk was in each year, instead of `thickening`.",
+    )
+    .optional(),
+    Input::number(
+        "elongation",
+        Unit::MillimetrePerYear,
+        "How fast trunk and branches grow long; with `rings` only branches, else as fast as the tree on average.",
+    )
+    .optional()
+    .range(1.0, 1e5),
+    Input::number(
+        "thickening",
+        Unit::MillimetrePerYear,
+        "How fast the trunk's radius grows; needed unless there are `rings`.",
+    )
+    .optional()
+    .range(1e-3, 1e4),
+    Input::number(
+        "age",
+        Unit::Year,
+        "Age of the tree, where its bark is; else that of its `rings`, or there is no bark.",
+    )
+    .optional()
+    .range(0.0, 1e5),
+    Input::number(
+        "sharpness",
+        Unit::One,
+        "Blend of trunk and branches: 1 soft, 2 paper, 16 hard.",
+    )
+    .default("2")
+    .range(1.0, 16.0),
+    Input::new(
+        "reach",
+        Type::Pair(Unit::Millimetre),
+        "Where a branch's influence ends, along and across it; fades from half of that on.",
+    )
+    .optional()
+    .range(1e-3, 1e6),
+];
+
+/// The outputs, which `straight_growth_field` has as well.
+pub(super) const TIME: Output =
+    Output::field("time", Type::Number(Unit::Year), "Growth time.").on(Domain::Solid);
+pub(super) const BRANCH: Output = Output::field(
+    "branch",
+    Type::Number(Unit::One),
+    "0 in the trunk's wood, near 1 in a knot.",
+)
+.on(Domain::Solid);
+pub(super) const INSIDE: Output = Output::field(
+    "inside",
+    Type::Number(Unit::One),
+    "1 within the bark and 0 outside; 1 everywhere if the tree has no age.",
+)
+.on(Domain::Solid);
+
 fn build(inputs: &Inputs<'_>, context: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let (settings, rings) = settings(inputs)?;
+    let model = GrowthModel::with_rings(inputs.skeleton("skeleton"), settings, rings)?;
+    Ok(outputs(inputs, context, model))
+}
+
+/// How a tree grows, as the inputs say.
+pub(super) fn settings(
+    inputs: &Inputs<'_>,
+) -> Result<(GrowthSettings, Option<Arc<RingSeries>>), Failure> {
     let reach = inputs.get("reach").map(|_| {
         let [along, across] = inputs.pair("reach");
         Reach { along, across }
@@ -134,23 +149,26 @@ fn build(inputs: &Inputs<'_>, context: &Build<'_>) -> Result<Vec<Value>, Failure
         sharpness: inputs.number("sharpness"),
         reach,
     };
-    let skeleton = inputs.skeleton("skeleton");
-    let model = GrowthModel::with_rings(skeleton, settings, rings.cloned())?;
-    let position = Field::position(Domain::Solid);
-    let growth = context.kernel(GrowthKernel::new(model), vec![position]);
+    Ok((settings, rings.cloned()))
+}
+
+/// Growth time, share of the branches and what is inside the bark.
+pub(super) fn outputs(inputs: &Inputs<'_>, context: &Build<'_>, model: GrowthModel) -> Vec<Value> {
     let age = match inputs.get("age") {
         Some(_) => Some(inputs.number("age")),
-        None => rings.map(|rings| rings.years() as f64),
+        None => model.rings.as_ref().map(|rings| rings.years() as f64),
     };
+    let position = Field::position(Domain::Solid);
+    let growth = context.kernel(GrowthKernel::new(model), vec![position]);
     let inside = match age {
         Some(age) => below(context, growth.part(0, 1), age),
         None => Field::constant(1.0),
     };
-    Ok(vec![
+    vec![
         Value::Field(growth.part(0, 1)),
         Value::Field(growth.part(1, 1)),
         Value::Field(inside),
-    ])
+    ]
 }
 
 /// How fast branches, and trunks without rings, grow long and thick.

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Trunk and branches from literals.
 pub static KIND: Kind = Kind {
     name: "skeleton",
-    version: 1,
+    version: 2,
     about: "The skeleton of a tree: a curved trunk through nodes, and straight branches on it.",
     source: "Momoi & Takatera 2014, eqs. (4)-(8)",
     inputs: &[
@@ -86,10 +86,21 @@ const BRANCH: &[Input] = &[
     )
     .optional()
     .range(1e-6, 1e6),
+    Input::number(
+        "length",
+        Unit::Millimetre,
+        "From the start to the tip, for kinds whose branches end: `virtual_energy`.",
+    )
+    .optional()
+    .range(1e-3, 1e6),
 ];
 
 fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
-    let trunk: Vec<DVec3> = inputs.list("trunk").iter().filter_map(vector).collect();
+    let trunk: Vec<DVec3> = inputs
+        .list("trunk")
+        .iter()
+        .filter_map(Value::as_vector)
+        .collect();
     let tangents = tangents(inputs);
     let curve = TrunkCurve::through(&trunk, tangents)
         .map_err(|error| Failure::of_input("trunk", error.to_string()))?;
@@ -120,18 +131,13 @@ pub(super) fn tangents(inputs: &Inputs<'_>) -> Tangents {
 }
 
 fn branch(item: &Value, curve: &TrunkCurve) -> Result<Branch, String> {
-    let Value::Record(parts) = item else {
-        return Err(format!("expected a record, found a {}", item.type_name()));
-    };
-    let part = |name: &str| {
-        parts
-            .iter()
-            .find(|(part, _)| *part == name)
-            .map(|(_, value)| value)
-    };
-    let height = part("at").and_then(number).ok_or("`at` is missing")?;
-    let direction = part("direction")
-        .and_then(vector)
+    let height = item
+        .part("at")
+        .and_then(Value::as_number)
+        .ok_or("`at` is missing")?;
+    let direction = item
+        .part("direction")
+        .and_then(Value::as_vector)
         .ok_or("`direction` is missing")?;
     let [lowest, highest] = curve.heights();
     if !(lowest..=highest).contains(&height) {
@@ -142,8 +148,8 @@ fn branch(item: &Value, curve: &TrunkCurve) -> Result<Branch, String> {
     let direction = direction
         .try_normalize()
         .ok_or("expected a `direction`, found a vector of length 0")?;
-    let [speed, half_width, distance] =
-        ["thickening", "half_width", "at_distance"].map(|name| part(name).and_then(number));
+    let [speed, half_width, distance] = ["thickening", "half_width", "at_distance"]
+        .map(|name| item.part(name).and_then(Value::as_number));
     let thickness = match (speed, half_width, distance) {
         (Some(speed), None, None) => Thickness::Speed(speed),
         (None, Some(half_width), Some(distance)) => Thickness::HalfWidth {
@@ -156,20 +162,6 @@ fn branch(item: &Value, curve: &TrunkCurve) -> Result<Branch, String> {
         height,
         direction,
         thickness,
+        length: item.part("length").and_then(Value::as_number),
     })
-}
-
-fn number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Number(number) => Some(*number),
-        Value::Whole(number) => Some(*number as f64),
-        _ => None,
-    }
-}
-
-fn vector(value: &Value) -> Option<DVec3> {
-    match value {
-        Value::Vector(vector) => Some(*vector),
-        _ => None,
-    }
 }

@@ -33,7 +33,7 @@ use std::sync::Arc;
 /// Trunk and branches from the pith and the knots of a measured log.
 pub static KIND: Kind = Kind {
     name: "skeleton_from_file",
-    version: 2,
+    version: 3,
     about: "The skeleton of a measured log, its pith as trunk and its knots as branches, or of a measured tree. Parts \
             of a trunk that do not rise and branches of branches are left out, with a warning.",
     source: "Larsson et al. 2022 (the knots' formulas and data); Raumonen et al. 2013 (cylinders of TreeQSM); Momoi & \

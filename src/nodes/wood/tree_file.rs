@@ -183,5 +183,6 @@ fn branch(segment: &Segment, curve: &TrunkCurve) -> Option<Branch> {
         height: segment.start.z,
         direction: chord.try_normalize()?,
         thickness,
+        length: Some(chord.length()),
     })
 }

@@ -12,6 +12,7 @@ fn bent(height: Field, by: Field, amount: DVec3) -> Field {
         domain: Domain::Solid,
         channels: BTreeMap::from([("height".into(), height)]),
         size: None,
+        surface: None,
     };
     let values = [
         Value::Material(Arc::new(solid)),
@@ -84,6 +85,7 @@ fn distortion_by_a_constant_is_a_shift() {
             ("roughness".into(), constant),
         ]),
         size: None,
+        surface: None,
     };
     let values = [
         Value::Material(Arc::new(solid)),

@@ -11,7 +11,7 @@ const MOST_BUCKETS: usize = 1 << 16;
 ///
 /// Piece i of the curve holds the heights from `bounds[i]` up to, not including, `bounds[i + 1]`.
 #[derive(Debug)]
-pub(super) struct Heights {
+pub(in crate::nodes::wood) struct Heights {
     bounds: Vec<f32>,
     buckets: Vec<Bucket>,
     lowest: f32,
@@ -31,7 +31,7 @@ struct Bucket {
 
 impl Heights {
     /// Sorts the heights of at least two nodes, none below the one before it.
-    pub(super) fn new(nodes: &[f32]) -> Heights {
+    pub(in crate::nodes::wood) fn new(nodes: &[f32]) -> Heights {
         let count = (2 * nodes.len()).min(MOST_BUCKETS);
         let scale = (count - 1) as f32 / (nodes[nodes.len() - 1] - nodes[0]);
         let mut heights = Heights {
@@ -82,7 +82,7 @@ impl Heights {
     }
 
     /// The piece that holds height `z`.
-    pub(super) fn piece(&self, z: f32) -> usize {
+    pub(in crate::nodes::wood) fn piece(&self, z: f32) -> usize {
         self.piece_in_bucket(z, self.bucket(z))
     }
 

@@ -5,13 +5,16 @@
 //! depend neither on its neighbours nor on where blocks begin.
 
 use super::branches::{self, BranchConstants, ScaledSums};
+use super::clock::Clock;
+use super::line::TrunkLine;
 use super::near::{Bounds, NearBranches};
 use super::power::Power;
+use super::straight_columns::StraightTimes;
 use super::trunk::{TrunkTable, trunk_times};
 use super::{GrowthModel, Reach};
 use crate::field::{Block, Kernel};
 use crate::key::KeyHasher;
-use crate::nodes::wood::growth_field;
+use crate::nodes::wood::{growth_field, straight_growth_field};
 use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -19,12 +22,12 @@ use glam::Vec3;
 use std::fmt;
 
 /// Samples in a run: they stay in the fastest cache, and few branches are near all of them.
-pub(super) const RUN: usize = 128;
+pub(in crate::nodes::wood) const RUN: usize = 128;
 
 /// From the position (x, y, z) in mm to T in years and the share of the branches in it.
 pub struct GrowthKernel {
     model: GrowthModel,
-    trunk: TrunkTable,
+    trunk: TrunkColumns,
     branches: Vec<BranchConstants>,
     near: NearBranches,
     power: Power,
@@ -35,7 +38,7 @@ impl GrowthKernel {
     pub fn new(model: GrowthModel) -> GrowthKernel {
         let constants = |branch| BranchConstants::new(branch, &model.settings);
         GrowthKernel {
-            trunk: TrunkTable::new(&model),
+            trunk: TrunkColumns::new(&model),
             branches: model.branches.iter().map(constants).collect(),
             near: NearBranches::new(&model),
             power: Power::new(model.settings.sharpness),
@@ -49,7 +52,7 @@ impl fmt::Debug for GrowthKernel {
         formatter
             .debug_struct("GrowthKernel")
             .field("settings", &self.model.settings)
-            .field("nodes", &self.model.curve.nodes().len())
+            .field("trunk", &self.model.trunk)
             .field("branches", &self.branches.len())
             .finish_non_exhaustive()
     }
@@ -58,13 +61,17 @@ impl fmt::Debug for GrowthKernel {
 impl Kernel for GrowthKernel {
     fn add_to_key(&self, key: &mut KeyHasher) {
         let GrowthModel {
-            curve,
+            trunk,
             branches,
             settings,
             rings,
         } = &self.model;
-        key.text("growth")
-            .whole(i64::from(growth_field::KIND.version))
+        let (name, version) = match trunk {
+            TrunkLine::Curved(_) => ("growth", growth_field::KIND.version),
+            TrunkLine::Straight(_) => ("straight_growth", straight_growth_field::KIND.version),
+        };
+        key.text(name)
+            .whole(i64::from(version))
             .whole(branches.len() as i64);
         let mut numbers = |numbers: &[f64]| {
             numbers.iter().for_each(|number| {
@@ -77,12 +84,22 @@ impl Kernel for GrowthKernel {
             across: 0.0,
         });
         numbers(&[reach.along, reach.across]);
-        for piece in curve.pieces() {
-            numbers(&[piece.start]);
-            piece
-                .coefficients
-                .iter()
-                .for_each(|coefficient| numbers(&coefficient.to_array()));
+        match trunk {
+            TrunkLine::Curved(curve) => {
+                for piece in curve.pieces() {
+                    numbers(&[piece.start]);
+                    piece
+                        .coefficients
+                        .iter()
+                        .for_each(|coefficient| numbers(&coefficient.to_array()));
+                }
+            }
+            TrunkLine::Straight(trunk) => {
+                trunk
+                    .nodes()
+                    .iter()
+                    .for_each(|node| numbers(&node.to_array()));
+            }
         }
         for branch in branches {
             numbers(&branch.start.to_array());
@@ -107,12 +124,7 @@ impl Kernel for GrowthKernel {
         } else {
             1000
         };
-        let of_trunk = if self.model.rings.is_some() {
-            15.0
-        } else {
-            5.0
-        };
-        of_trunk + self.branches.len().min(most) as f32
+        self.trunk.nanoseconds() + self.branches.len().min(most) as f32
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
@@ -138,7 +150,7 @@ fn evaluate_block<S: Simd>(
         let position = [x, y, z];
         let bounds = bounds(simd, position);
         kernel.near.find(&bounds, &mut near);
-        trunk_times(simd, &kernel.trunk, position, times);
+        kernel.trunk.write_times(simd, position, times);
         shares.fill(0.0);
         let run = Run {
             kernel,
@@ -155,6 +167,41 @@ fn evaluate_block<S: Simd>(
         }
         if let Some(least) = below_ground {
             least.replace(times, shares);
+        }
+    }
+}
+
+/// The trunk, laid out for columns.
+enum TrunkColumns {
+    Curved(TrunkTable),
+    Straight(StraightTimes),
+}
+
+impl TrunkColumns {
+    fn new(model: &GrowthModel) -> TrunkColumns {
+        match &model.trunk {
+            TrunkLine::Curved(curve) => {
+                TrunkColumns::Curved(TrunkTable::new(curve, Clock::new(model)))
+            }
+            TrunkLine::Straight(trunk) => {
+                TrunkColumns::Straight(StraightTimes::new(trunk, Clock::new(model)))
+            }
+        }
+    }
+
+    fn nanoseconds(&self) -> f32 {
+        match self {
+            TrunkColumns::Curved(table) => table.nanoseconds(),
+            TrunkColumns::Straight(times) => times.nanoseconds(),
+        }
+    }
+
+    /// Writes T_1 in years.
+    #[simd]
+    fn write_times<S: Simd>(&self, simd: S, position: [&[f32]; 3], times: &mut [f32]) {
+        match self {
+            TrunkColumns::Curved(table) => trunk_times(simd, table, position, times),
+            TrunkColumns::Straight(straight) => straight.write_times(simd, position, times),
         }
     }
 }

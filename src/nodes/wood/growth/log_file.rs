@@ -38,6 +38,7 @@ impl Knot {
                 distance: chord.length(),
                 half_width,
             },
+            length: Some(chord.length()),
         })
     }
 }

@@ -1,5 +1,7 @@
 //! Growth time in double precision, term by term: the reference that the kernel is tested against.
 
+use super::line::TrunkLine;
+use super::straight::{StraightTrunk, Way};
 use crate::geometry::spline::TrunkCurve;
 use crate::node::Failure;
 use crate::value::{RingSeries, Skeleton, Thickness};
@@ -48,7 +50,7 @@ pub struct GrowingBranch {
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrowthModel {
     /// The trunk.
-    pub curve: TrunkCurve,
+    pub trunk: TrunkLine,
     /// The branches in the order of the skeleton.
     pub branches: Vec<GrowingBranch>,
     /// How it grows.
@@ -105,7 +107,7 @@ pub fn growth_time(
 }
 
 impl GrowthModel {
-    /// Puts the curve through the trunk and finds how fast each branch thickens.
+    /// A tree with a curved trunk that grows by speeds; finds how fast each branch thickens.
     ///
     /// # Errors
     /// Nodes that make no curve, a branch that starts beyond the ends of the trunk, a direction of length
@@ -124,20 +126,42 @@ impl GrowthModel {
         settings: GrowthSettings,
         rings: Option<Arc<RingSeries>>,
     ) -> Result<GrowthModel, Failure> {
-        let curve = TrunkCurve::through(&skeleton.trunk, skeleton.tangents)
-            .map_err(|error| Failure::of_input("skeleton", format!("trunk: {error}")))?;
+        let trunk = TrunkLine::Curved(curve(skeleton)?);
+        GrowthModel::along(trunk, skeleton, settings, rings)
+    }
+
+    /// As [`GrowthModel::with_rings`], with a trunk of straight segments.
+    ///
+    /// # Errors
+    /// As [`GrowthModel::new`]: a trunk that no curve can follow is none.
+    pub fn straight(
+        skeleton: &Skeleton,
+        settings: GrowthSettings,
+        rings: Option<Arc<RingSeries>>,
+    ) -> Result<GrowthModel, Failure> {
+        curve(skeleton)?;
+        let trunk = TrunkLine::Straight(StraightTrunk::through(&skeleton.trunk));
+        GrowthModel::along(trunk, skeleton, settings, rings)
+    }
+
+    fn along(
+        trunk: TrunkLine,
+        skeleton: &Skeleton,
+        settings: GrowthSettings,
+        rings: Option<Arc<RingSeries>>,
+    ) -> Result<GrowthModel, Failure> {
         let mut model = GrowthModel {
-            curve,
+            trunk,
             branches: vec![],
             settings,
             rings,
         };
         for (index, branch) in skeleton.branches.iter().enumerate() {
-            let start = model.curve.at(branch.height);
+            let start = model.trunk.at(branch.height);
             let mut growing = GrowingBranch {
                 start,
                 direction: branch.direction.normalize_or_zero(),
-                start_time: model.tip_time(branch.height),
+                start_time: model.tip_time(model.trunk.way_to(branch.height)),
                 thickening: 0.0,
             };
             let thickening = model
@@ -151,20 +175,35 @@ impl GrowthModel {
         Ok(model)
     }
 
-    /// When the trunk's tip was at a height in mm, in years.
-    fn tip_time(&self, height: f64) -> f64 {
-        match &self.rings {
-            Some(rings) => rings.time_of_height(height),
-            None => height / self.settings.elongation,
+    /// T_1 in years, eqs. (9)-(13): cones about the trunk's curve; or eqs. (1)-(3) and the blend of the straight
+    /// skeleton.
+    pub fn trunk_time(&self, point: DVec3) -> f64 {
+        match &self.trunk {
+            TrunkLine::Curved(curve) => self.time_of(Way {
+                along: point.z,
+                across: (point - curve.at(point.z)).truncate().length(),
+            }),
+            TrunkLine::Straight(trunk) => {
+                let seen = trunk.see(point);
+                let [first, second] = seen.ways.map(|way| self.time_of(way));
+                seen.share * first + (1.0 - seen.share) * second
+            }
         }
     }
 
-    /// T_1 in years: cones about the trunk's curve, eqs. (9)-(13), or rings.
-    pub fn trunk_time(&self, point: DVec3) -> f64 {
-        let across = (point - self.curve.at(point.z)).truncate().length();
+    /// When the trunk's tip had come this way in mm, in years.
+    fn tip_time(&self, way: f64) -> f64 {
         match &self.rings {
-            Some(rings) => rings.time_at(across, point.z),
-            None => point.z / self.settings.elongation + across / self.settings.thickening,
+            Some(rings) => rings.time_of_height(way),
+            None => way / self.settings.elongation,
+        }
+    }
+
+    /// How many years growth took along the trunk and from there to a point.
+    fn time_of(&self, way: Way) -> f64 {
+        match &self.rings {
+            Some(rings) => rings.time_at(way.across, way.along),
+            None => self.tip_time(way.along) + way.across / self.settings.thickening,
         }
     }
 
@@ -209,7 +248,7 @@ impl GrowthModel {
     }
 
     fn check(&self, height: f64, branch: &GrowingBranch) -> Result<(), String> {
-        let [lowest, highest] = self.curve.heights();
+        let [lowest, highest] = self.trunk.heights();
         if !(lowest..=highest).contains(&height) {
             return Err(format!(
                 "expected a start between z = {lowest} and z = {highest} mm, found {height}"
@@ -258,6 +297,12 @@ impl GrowthModel {
             ))
         }
     }
+}
+
+/// The curve through a skeleton's trunk.
+fn curve(skeleton: &Skeleton) -> Result<TrunkCurve, Failure> {
+    TrunkCurve::through(&skeleton.trunk, skeleton.tangents)
+        .map_err(|error| Failure::of_input("skeleton", format!("trunk: {error}")))
 }
 
 /// T and the share of the branches in it, from T_1 and (T_i, f_i) of every branch.

@@ -1,5 +1,6 @@
 //! Powers and roots of positive vectors: the same bits at every vector width.
 
+use crate::lanes::{exp2, log2};
 use fearless_simd::prelude::*;
 
 /// The exponent k of the blend between trunk and branches.
@@ -57,55 +58,6 @@ pub(super) fn inverse_root<S: Simd>(simd: S, x: S::f32s, power: Power) -> S::f32
         Power::Any(exponent) => exp2(simd, -log2(simd, x) * (1.0 / exponent)),
     }
 }
-
-/// Binary logarithm of positive normal numbers, within 2e-7 of the larger of 1 and its size.
-#[inline(always)]
-fn log2<S: Simd>(simd: S, x: S::f32s) -> S::f32s {
-    // x = 2^e m with m between sqrt(1/2) and sqrt(2).
-    let bits: S::i32s = x.bitcast();
-    let exponent = (bits - 0x3f35_04f3) >> 23;
-    let m: S::f32s = (bits - (exponent << 23)).bitcast();
-    // ln m = 2 artanh((m - 1) / (m + 1)), whose series is cut where terms are below 1e-8.
-    let s = (m - 1.0) / (m + 1.0);
-    let artanh = s * polynomial(simd, s * s, &ARTANH_SERIES);
-    exponent.to_float::<S::f32s>() + artanh * (2.0 * std::f32::consts::LOG2_E)
-}
-
-/// 2^x; beyond +-126 the value there.
-#[inline(always)]
-fn exp2<S: Simd>(simd: S, x: S::f32s) -> S::f32s {
-    // Adding it rounds to a whole number, since it leaves no room for a fraction.
-    const ROUND: f32 = 12_582_912.0;
-    let x = x.max(-126.0).min(126.0);
-    let whole = (x + ROUND) - ROUND;
-    let scale: S::f32s = ((whole.to_int::<S::i32s>() + 127) << 23).bitcast();
-    polynomial(simd, x - whole, &EXP2_SERIES) * scale
-}
-
-/// The polynomial with these coefficients, the highest first.
-#[inline(always)]
-fn polynomial<S: Simd>(simd: S, x: S::f32s, coefficients: &[f32]) -> S::f32s {
-    let mut sum = S::f32s::splat(simd, 0.0);
-    for coefficient in coefficients {
-        sum = sum * x + *coefficient;
-    }
-    sum
-}
-
-/// The series of artanh(s) / s in s^2.
-const ARTANH_SERIES: [f32; 5] = [1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0];
-
-/// ln(2)^n / n! from n = 7 down to 0.
-const EXP2_SERIES: [f32; 8] = {
-    let mut series = [0.0; 8];
-    let (mut term, mut n) = (1.0, 0);
-    while n < 8 {
-        series[7 - n] = term as f32;
-        n += 1;
-        term *= std::f64::consts::LN_2 / n as f64;
-    }
-    series
-};
 
 #[cfg(test)]
 mod tests {

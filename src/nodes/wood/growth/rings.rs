@@ -11,7 +11,7 @@ use fearless_simd_macros::simd;
 
 /// A ring series, laid out to be looked up.
 #[derive(Debug)]
-pub(super) struct RingTable {
+pub(in crate::nodes::wood) struct RingTable {
     /// From the height in mm to the section's area in mm² when the tree was that tall.
     area_of_height: Steps,
     /// From that area to the time in years.
@@ -19,7 +19,7 @@ pub(super) struct RingTable {
 }
 
 impl RingTable {
-    pub(super) fn new(series: &RingSeries) -> RingTable {
+    pub(in crate::nodes::wood) fn new(series: &RingSeries) -> RingTable {
         let pairs = series.heights.iter().zip(&series.areas);
         let heights = pairs.map(|(height, area)| [*height, *area]);
         let times = (1..)
@@ -36,7 +36,12 @@ impl RingTable {
 
     /// From squares of distances to the trunk's curve, in mm², to years: `S^-1(S(m(z)) + pi d^2)`.
     #[simd]
-    pub(super) fn times<S: Simd>(&self, simd: S, heights: &[f32], times: &mut [f32]) {
+    pub(in crate::nodes::wood) fn times<S: Simd>(
+        &self,
+        simd: S,
+        heights: &[f32],
+        times: &mut [f32],
+    ) {
         let mut areas = [0.0; RUN];
         let areas = &mut areas[..times.len()];
         self.area_of_height.evaluate(simd, heights, areas);

@@ -1,10 +1,9 @@
 //! Growth time by the trunk alone, for columns of positions.
 
-use super::GrowthModel;
+use super::clock::Clock;
 use super::heights::Heights;
-use super::rings::RingTable;
 use crate::field::transposed;
-use crate::geometry::spline::Piece;
+use crate::geometry::spline::{Piece, TrunkCurve};
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
@@ -18,9 +17,7 @@ const MOST_AT_ONCE: usize = 4;
 pub(super) struct TrunkTable {
     heights: Heights,
     pieces: Vec<PieceConstants>,
-    years_along: f32,
-    years_across: f32,
-    rings: Option<RingTable>,
+    clock: Clock,
 }
 
 /// `(x, y) = c0 + h (c1 + h (c2 + h c3))` with `h = z - start`.
@@ -32,15 +29,14 @@ struct PieceConstants {
 }
 
 impl TrunkTable {
-    pub(super) fn new(model: &GrowthModel) -> TrunkTable {
-        let nodes: Vec<f32> = model
-            .curve
-            .nodes()
-            .iter()
-            .map(|node| node.z as f32)
-            .collect();
+    pub(super) fn nanoseconds(&self) -> f32 {
+        5.0 + self.clock.nanoseconds()
+    }
+
+    pub(super) fn new(curve: &TrunkCurve, clock: Clock) -> TrunkTable {
+        let nodes: Vec<f32> = curve.nodes().iter().map(|node| node.z as f32).collect();
         let starts = std::iter::once(&nodes[0]).chain(&nodes);
-        let pieces = model.curve.pieces();
+        let pieces = curve.pieces();
         TrunkTable {
             heights: Heights::new(&nodes),
             pieces: pieces
@@ -48,9 +44,7 @@ impl TrunkTable {
                 .zip(starts)
                 .map(|(p, z)| PieceConstants::new(p, *z))
                 .collect(),
-            years_along: (1.0 / model.settings.elongation) as f32,
-            years_across: (1.0 / model.settings.thickening) as f32,
-            rings: model.rings.as_deref().map(RingTable::new),
+            clock,
         }
     }
 }
@@ -77,19 +71,7 @@ pub(super) fn trunk_times<S: Simd>(
 ) {
     // In two passes: what one lane at a time has stored cannot be loaded as a vector at once.
     squares_across(simd, table, position, times);
-    if let Some(rings) = &table.rings {
-        rings.times(simd, position[2], times);
-        return;
-    }
-    let lanes = S::f32s::LEN;
-    for (z, times) in position[2]
-        .chunks_exact(lanes)
-        .zip(times.chunks_exact_mut(lanes))
-    {
-        let across = S::f32s::from_slice(simd, times).sqrt();
-        let along = S::f32s::from_slice(simd, z);
-        (along * table.years_along + across * table.years_across).store_slice(times);
-    }
+    table.clock.write_times(simd, position[2], times);
 }
 
 /// Writes the squares of the distances from the curve.
