@@ -53,7 +53,7 @@ pub static KINDS: &[&Kind] = &[
     &rings::growth_model::KIND,
     &shape::block::KIND,
     &shape::log::KIND,
-    &view::view::KIND,
+    &view::KIND,
 ];
 
 /// The kind called `name`.
