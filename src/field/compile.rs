@@ -5,7 +5,7 @@
 //! slots by liveness, so a program needs as many buffers as are alive at once.
 
 use super::charts::Charts;
-use super::within::Within;
+use super::within::{Member, Sharing, Within};
 use super::{Field, Kernel, Operation, Sampling};
 use crate::cancel::Cancel;
 use crate::key::{Key, KeyHasher};
@@ -16,6 +16,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Program {
     pub(super) steps: Vec<Step>,
+    /// Programs that give fields inside single pixels.
+    pub(super) within: Vec<Within>,
     pub(super) slots: usize,
     /// Slots that hold one number throughout, with that number.
     pub(super) constants: Vec<(usize, f32)>,
@@ -55,8 +57,8 @@ pub(super) struct KernelStep {
     /// For every input the slots of its spread, if the kernel reads it.
     pub(super) spreads: Vec<Option<[usize; 2]>>,
     pub(super) outputs: Vec<usize>,
-    /// Gives the outputs inside single pixels, where the kernel cannot filter.
-    pub(super) within: Option<Within>,
+    /// Where the outputs inside single pixels are found, if the kernel cannot filter.
+    pub(super) within: Option<Member>,
     /// The charts of the samples, if that is where the outputs are averaged.
     pub(super) charts: Vec<usize>,
     /// How many samples beyond the tile the outputs are read.
@@ -114,6 +116,7 @@ pub(super) struct Compiler {
     constants: Vec<(usize, f32)>,
     remainder: Option<usize>,
     steps: Vec<Step>,
+    sharing: Sharing,
     columns: usize,
 }
 
@@ -136,6 +139,7 @@ impl Compiler {
             constants: Vec::new(),
             remainder: None,
             steps: Vec::new(),
+            sharing: Sharing::default(),
             columns: POSITION.len(),
         }
     }
@@ -156,6 +160,7 @@ impl Compiler {
         let margin = super::cost::assign_margins(&mut self.steps, self.columns);
         let program = Program {
             steps: self.steps,
+            within: self.sharing.programs(),
             slots: self.columns,
             constants: self.constants,
             remainder: self.remainder,
@@ -289,11 +294,12 @@ impl Compiler {
             .map(|(column, of)| kernel.reads_spread(column).then(|| self.spread(*of)))
             .collect();
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
+        self.sharing.note(&*kernel, &inputs, &outputs);
         let within = self.may_be_supersampled(&*kernel, &inputs).then(|| {
-            Within::new(
-                self.seen_from_root(field, place),
-                self.charts.fields.clone(),
-            )
+            let seen = self.seen_from_root(field, place);
+            let mixes = kernel.mixes_charts();
+            self.sharing
+                .join(seen, outputs[0], &self.charts.fields, mixes)
         });
         let mut key = KeyHasher::new("step", 1);
         key.key(field.key()).key(self.places[place].key);

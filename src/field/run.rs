@@ -1,7 +1,8 @@
 //! Runs a program over one block of samples.
 
 use super::compile::{KernelStep, POSITION, Program, Step};
-use super::{Block, InputColumn, Kernel, Samples, charts, spread, supersample};
+use super::supersample::{Averages, supersample};
+use super::{Block, InputColumn, Kernel, Samples, charts, spread};
 use crate::cancel::Cancel;
 use crate::key::{Key, KeyHasher};
 use fearless_simd::Level;
@@ -71,6 +72,8 @@ pub struct Scratch {
     filled: Option<(Key, usize)>,
     /// The buffers for supersampling.
     pub(super) within: Option<Box<Scratch>>,
+    /// What programs for single pixels have given in this run.
+    averages: Vec<Averages>,
     work: BTreeMap<Arc<str>, Work>,
 }
 
@@ -78,6 +81,11 @@ impl Scratch {
     /// The column in slot `slot`.
     pub(super) fn column(&self, slot: usize) -> &[f32] {
         &self.slots[slot]
+    }
+
+    /// What a program for single pixels has given in this run.
+    pub(super) fn averages(&mut self, within: usize) -> &mut Averages {
+        &mut self.averages[within]
     }
 
     /// What every node did since the last call.
@@ -93,6 +101,9 @@ impl Scratch {
 
     /// Prepares the buffers for a program over `padded` samples.
     fn prepare(&mut self, program: &Program, samples: &Samples<'_>, padded: usize) {
+        self.averages.iter_mut().for_each(Averages::clear);
+        let most = self.averages.len().max(program.within.len());
+        self.averages.resize_with(most, Averages::default);
         if self.filled != Some((program.key, padded)) {
             self.slots
                 .resize_with(self.slots.len().max(program.slots), Vec::new);
@@ -146,11 +157,11 @@ impl Program {
                 }
                 (Step::Kernel(step), Stored::Columns(columns)) => load(scratch, step, columns),
                 (Step::Kernel(step), Stored::Under(key)) => {
-                    compute(scratch, step, samples, context, padded);
+                    compute(scratch, self, step, samples, context, padded);
                     store(scratch, step, *key, context, padded);
                 }
                 (Step::Kernel(step), Stored::Nowhere) => {
-                    compute(scratch, step, samples, context, padded);
+                    compute(scratch, self, step, samples, context, padded);
                 }
             }
         }
@@ -245,6 +256,7 @@ fn write_columns(
 
 fn compute(
     scratch: &mut Scratch,
+    program: &Program,
     step: &KernelStep,
     samples: &Samples<'_>,
     context: &RunContext<'_>,
@@ -277,8 +289,9 @@ fn compute(
             reused: false,
         },
     );
-    if let (Some(within), true) = (&step.within, context.filtering) {
-        supersample::supersample(scratch, step, within, samples, context, &mut outputs);
+    if let (Some(member), true) = (step.within, context.filtering) {
+        let within = (&program.within[member.within], member);
+        supersample(scratch, step, within, samples, context, &mut outputs);
     }
     for (slot, column) in step.outputs.iter().zip(outputs) {
         scratch.slots[*slot] = column;

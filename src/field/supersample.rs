@@ -4,8 +4,8 @@
 use super::compile::KernelStep;
 use super::run::{RunContext, Scratch};
 use super::spread::{self, Inside};
-use super::within::Within;
-use super::{PixelGrid, Samples, Sampling};
+use super::within::{Member, Within};
+use super::{PixelGrid, Program, Samples, Sampling};
 use fearless_simd::{Level, dispatch};
 
 /// Samples along each side of a supersampled pixel.
@@ -14,67 +14,156 @@ const SIDE: usize = 4;
 /// Pixels that are supersampled in one go: their samples are a block of some thousand.
 const PIXELS_AT_ONCE: usize = 128;
 
+/// What a program for single pixels has given in this run.
+#[derive(Debug, Default)]
+pub(super) struct Averages {
+    /// For each pixel the row of its means, [`UNKNOWN`] or [`NONE`]; empty before the first.
+    rows: Vec<u32>,
+    /// The means of all columns of the program, row after row.
+    means: Vec<f32>,
+}
+
+/// Not asked for yet.
+const UNKNOWN: u32 = u32::MAX;
+
+/// No sample of the pixel is of its chart.
+const NONE: u32 = u32::MAX - 1;
+
+impl Averages {
+    /// Forgets everything, for another run.
+    pub(super) fn clear(&mut self) {
+        self.rows.clear();
+        self.means.clear();
+    }
+
+    /// Those of the pixels that are not known yet.
+    fn unknown(&mut self, pixels: &[u32], length: usize) -> Vec<u32> {
+        self.rows.resize(length, UNKNOWN);
+        let is_unknown = |pixel: &u32| self.rows[*pixel as usize] == UNKNOWN;
+        pixels.iter().copied().filter(is_unknown).collect()
+    }
+
+    /// The mean of a column in a pixel, if there is one.
+    fn mean(&self, pixel: u32, column: usize, width: usize) -> Option<f32> {
+        let row = self.rows[pixel as usize];
+        let is_known = row != UNKNOWN && row != NONE;
+        is_known.then(|| self.means[row as usize * width + column])
+    }
+}
+
 /// Replaces the outputs of `step` in the pixels where it does not filter well.
 pub(super) fn supersample(
     scratch: &mut Scratch,
     step: &KernelStep,
-    within: &Within,
+    (within, member): (&Within, Member),
     samples: &Samples<'_>,
     context: &RunContext<'_>,
     outputs: &mut [Vec<f32>],
 ) {
-    let Samples::Grid { target, grid } = samples else {
+    let Samples::Grid { grid, .. } = samples else {
         return;
     };
     let pixels = pixels_to_supersample(scratch, step, grid, context.level);
     if pixels.is_empty() {
         return;
     }
-    let Some(within) = within.program(context.cancel) else {
-        return;
-    };
-    let mut inner = scratch.within.take().unwrap_or_default();
-    for pixels in pixels.chunks(PIXELS_AT_ONCE) {
-        let grid = grid.within_pixels(pixels, SIDE, within.margin());
-        let area = grid.width * grid.height;
-        within.run(
-            &Samples::Grid {
-                target: *target,
-                grid,
-            },
-            &mut inner,
-            context,
-        );
-        if context.is_cancelled() {
-            break;
-        }
-        let charts = |index: usize| (within.output(&inner, 1 + index, 0), step.charts[index]);
-        let charts: Vec<(&[f32], usize)> = (0..step.charts.len()).map(charts).collect();
-        for (column, output) in outputs.iter_mut().enumerate() {
-            let values = within.output(&inner, 0, column);
-            for (index, (values, pixel)) in values.chunks_exact(area).zip(pixels).enumerate() {
-                let mean = match charts.is_empty() {
-                    true => Some(mean_inside(values, within.margin())),
-                    false => {
-                        let is_of_chart = |sample: usize| {
-                            charts.iter().all(|(inside, slot)| {
-                                inside[index * area + sample].floor()
-                                    == scratch.column(*slot)[*pixel as usize].floor()
-                            })
-                        };
-                        mean_of_chart(values, within.margin(), is_of_chart)
-                    }
-                };
-                if let Some(mean) = mean {
-                    output[*pixel as usize] = mean;
-                }
+    let mut averages = std::mem::take(scratch.averages(member.within));
+    let unknown = averages.unknown(&pixels, grid.len());
+    if !unknown.is_empty()
+        && let Some(program) = within.program(context.cancel)
+    {
+        let run = InnerRun {
+            program,
+            fields: within.fields(),
+            charts: &step.charts,
+        };
+        run.average(scratch, samples, context, &unknown, &mut averages);
+    }
+    let width = within.width();
+    for (column, output) in (member.column..).zip(outputs) {
+        for pixel in &pixels {
+            if let Some(mean) = averages.mean(*pixel, column, width) {
+                output[*pixel as usize] = mean;
             }
         }
     }
-    for (node, work) in inner.take_work() {
-        scratch.note(&node, work);
+    *scratch.averages(member.within) = averages;
+}
+
+/// A program for single pixels.
+struct InnerRun<'a> {
+    program: &'a Program,
+    /// How many outputs come before the charts.
+    fields: usize,
+    /// The slots of the pixels' charts, if means stay in them.
+    charts: &'a [usize],
+}
+
+impl InnerRun<'_> {
+    /// Runs the program for some pixels and notes the means of its fields.
+    fn average(
+        &self,
+        scratch: &mut Scratch,
+        samples: &Samples<'_>,
+        context: &RunContext<'_>,
+        pixels: &[u32],
+        averages: &mut Averages,
+    ) {
+        let Samples::Grid { target, grid } = samples else {
+            return;
+        };
+        let (target, mut inner) = (*target, scratch.within.take().unwrap_or_default());
+        for pixels in pixels.chunks(PIXELS_AT_ONCE) {
+            let grid = grid.within_pixels(pixels, SIDE, self.program.margin());
+            let area = grid.width * grid.height;
+            let samples = Samples::Grid { target, grid };
+            self.program.run(&samples, &mut inner, context);
+            if context.is_cancelled() {
+                break;
+            }
+            self.note_means(scratch, &inner, area, pixels, averages);
+        }
+        for (node, work) in inner.take_work() {
+            scratch.note(&node, work);
+        }
+        scratch.within = Some(inner);
     }
-    scratch.within = Some(inner);
+
+    /// Notes the means of pixels whose samples `inner` has, `area` of each.
+    fn note_means(
+        &self,
+        scratch: &Scratch,
+        inner: &Scratch,
+        area: usize,
+        pixels: &[u32],
+        averages: &mut Averages,
+    ) {
+        let columns: Vec<&[f32]> = (0..self.fields)
+            .flat_map(|field| self.program.columns(inner, field))
+            .collect();
+        let chart = |index: usize| {
+            let inside = self.program.output(inner, self.fields + index, 0);
+            (inside, scratch.column(self.charts[index]))
+        };
+        let charts: Vec<_> = (0..self.charts.len()).map(chart).collect();
+        let all = inside(self.program.margin());
+        for (index, pixel) in pixels.iter().enumerate() {
+            let is_of_chart = |sample: &usize| {
+                charts.iter().all(|(inside, whole)| {
+                    inside[index * area + *sample].floor() == whole[*pixel as usize].floor()
+                })
+            };
+            let of_chart =
+                (!charts.is_empty()).then(|| all.iter().copied().filter(is_of_chart).collect());
+            let chosen: &Vec<usize> = of_chart.as_ref().unwrap_or(&all);
+            let row = (averages.means.len() / columns.len()) as u32;
+            averages.rows[*pixel as usize] = if chosen.is_empty() { NONE } else { row };
+            if !chosen.is_empty() {
+                let values = |column: &&[f32]| mean(&column[index * area..][..area], chosen);
+                averages.means.extend(columns.iter().map(values));
+            }
+        }
+    }
 }
 
 /// Indices of the samples where the kernel needs help, in order. Only samples that somebody reads and
@@ -118,27 +207,15 @@ fn pixels_to_supersample(
     pixels
 }
 
-/// The mean of a pixel's samples without their margin, added up in a fixed order.
-fn mean_inside(values: &[f32], margin: usize) -> f32 {
-    let width = SIDE + 2 * margin;
-    let rows = values.chunks_exact(width).skip(margin).take(SIDE);
-    let sum: f32 = rows.flat_map(|row| &row[margin..margin + SIDE]).sum();
-    sum / (SIDE * SIDE) as f32
-}
-
-/// The mean of those of a pixel's samples that are of its chart; `None` if there are none.
-fn mean_of_chart(
-    values: &[f32],
-    margin: usize,
-    is_of_chart: impl Fn(usize) -> bool,
-) -> Option<f32> {
+/// A pixel's samples without their margin.
+fn inside(margin: usize) -> Vec<usize> {
     let width = SIDE + 2 * margin;
     let rows = (margin..margin + SIDE).map(|row| row * width + margin);
-    let samples = rows.flat_map(|start| start..start + SIDE);
-    let (mut sum, mut count) = (0.0, 0u8);
-    for sample in samples.filter(|sample| is_of_chart(*sample)) {
-        sum += values[sample];
-        count += 1;
-    }
-    (count > 0).then(|| sum / f32::from(count))
+    rows.flat_map(|start| start..start + SIDE).collect()
+}
+
+/// The mean of some samples, added up in their order.
+fn mean(values: &[f32], chosen: &[usize]) -> f32 {
+    let sum: f32 = chosen.iter().map(|sample| values[*sample]).sum();
+    sum / chosen.len() as f32
 }

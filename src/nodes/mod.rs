@@ -59,7 +59,7 @@ pub static KINDS: &[&Kind] = &[
     &rings::growth_model::KIND,
     &shape::block::KIND,
     &shape::log::KIND,
-    &view::view::KIND,
+    &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
 ];

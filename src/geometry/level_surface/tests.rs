@@ -68,14 +68,14 @@ fn a_trunk_is_sawn_off_flat_at_the_sides_of_the_box() {
         }
     }
     // The disc of radius 40 without what lies beyond y = 30.
-    let half = (30f64 / 40.0).acos();
-    let disc = 1600.0 * (std::f64::consts::PI - half) + 30.0 * 40.0 * half.sin();
+    let half = libm::acos(30.0 / 40.0);
+    let disc = 1600.0 * (std::f64::consts::PI - half) + 30.0 * 40.0 * libm::sin(half);
     assert!(
         (on_sides[5] / disc - 1.0).abs() < 0.005,
         "{on_sides:?} {disc}"
     );
     assert!((on_sides[4] / -disc - 1.0).abs() < 0.005);
-    let chord = 2.0 * 40.0 * half.sin() * 200.0;
+    let chord = 2.0 * 40.0 * libm::sin(half) * 200.0;
     assert!(
         (on_sides[3] / chord - 1.0).abs() < 0.01,
         "{on_sides:?} {chord}"
@@ -94,7 +94,7 @@ fn a_thin_arm_is_followed_from_where_it_was_seen() {
     );
     let ball = |point: DVec3| 20.0 - point.length();
     let rod = |point: DVec3| {
-        let across = (point.y - 5.0).hypot(point.z - 7.0);
+        let across = libm::hypot(point.y - 5.0, point.z - 7.0);
         (6.0 - across).min(380.0 - point.x).min(point.x)
     };
     let surface = of(&grid, |point| ball(point).max(rod(point))).unwrap();

@@ -352,7 +352,7 @@ impl Sky {
                 continue;
             }
             light.openness += facing;
-            let near = scene.map_or(1.0, |scene| self.from_ground(scene, point, direction));
+            let near = scene.map_or(1.0, |scene| self.of_ground(scene, point, direction));
             let radiance = self.radiance(direction);
             for (sum, radiance) in light.colour.iter_mut().zip(radiance) {
                 *sum += radiance * (facing * share * near);
@@ -363,7 +363,7 @@ impl Sky {
     }
 
     /// The ground close to a thing lies in its shade and sends less back.
-    fn from_ground(&self, scene: &Scene, point: &Point, direction: DVec3) -> f64 {
+    fn of_ground(&self, scene: &Scene, point: &Point, direction: DVec3) -> f64 {
         match scene.ground {
             Some(ground) if direction.z < 0.0 => {
                 let distance = ((point.place.z - ground) / -direction.z).max(0.0);

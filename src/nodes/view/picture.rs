@@ -13,7 +13,7 @@ const EDGE: f32 = 0.012;
 impl Kernel for Smooth {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("view smooth")
-            .whole(i64::from(super::view::KIND.version));
+            .whole(i64::from(super::KIND.version));
     }
 
     fn width(&self) -> usize {
@@ -48,8 +48,7 @@ const SHOULDER: f32 = 0.8;
 
 impl Kernel for Tone {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("view tone")
-            .whole(i64::from(super::view::KIND.version));
+        key.text("view tone").whole(i64::from(super::KIND.version));
     }
 
     fn width(&self) -> usize {

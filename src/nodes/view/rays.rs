@@ -74,8 +74,7 @@ pub(super) struct Sight(pub(super) Arc<Stage>);
 
 impl Kernel for Sight {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("view sight")
-            .whole(i64::from(super::view::KIND.version));
+        key.text("view sight").whole(i64::from(super::KIND.version));
         self.0.add_to_key(key);
     }
 
@@ -108,7 +107,7 @@ pub(super) struct Illumination(pub(super) Arc<Stage>);
 impl Kernel for Illumination {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("view illumination")
-            .whole(i64::from(super::view::KIND.version));
+            .whole(i64::from(super::KIND.version));
         self.0.add_to_key(key);
     }
 

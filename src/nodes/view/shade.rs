@@ -56,8 +56,7 @@ struct Surface {
 
 impl Kernel for Shade {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("view shade")
-            .whole(i64::from(super::view::KIND.version));
+        key.text("view shade").whole(i64::from(super::KIND.version));
         self.stage.add_to_key(key);
         key.whole(i64::from(self.has_bark))
             .whole(i64::from(self.has_relief));

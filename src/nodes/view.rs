@@ -5,13 +5,21 @@
 //! linear until the mean over a pixel is taken; then a tone curve shows light up to 0.8 as it is and draws what is
 //! brighter towards white.
 
-use super::camera::{CAMERA, Camera};
-use super::light::{Disc, LIGHT, Light, SKY, Sky, Turn};
-use super::picture::{Smooth, Tone};
-use super::rays::{Illumination, Sight, Stage, seen};
-use super::record::Record;
-use super::scene::{Cut, MOST_CUTS, Point, Scene, Thing};
-use super::shade::Shade;
+mod camera;
+mod light;
+mod picture;
+mod rays;
+mod record;
+mod scene;
+mod shade;
+
+use self::camera::{CAMERA, Camera};
+use self::light::{Disc, LIGHT, Light, SKY, Sky, Turn};
+use self::picture::{Smooth, Tone};
+use self::rays::{Illumination, Sight, Stage, seen};
+use self::record::Record;
+use self::scene::{Cut, MOST_CUTS, Point, Scene, Thing};
+use self::shade::Shade;
 use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
