@@ -127,7 +127,7 @@ impl Body {
     /// A face with its half of the edges around it; its chart has the face's number.
     fn add_face(&mut self, face: usize) {
         let axis = face / 2;
-        let sign = if face % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
         let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
         let steps = self.steps();
         let side = steps.len();
