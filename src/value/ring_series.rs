@@ -16,8 +16,9 @@ pub struct RingSeries {
     pub heights: Vec<f64>,
 }
 
-/// Most years of a series, largest area in mm² and largest height in mm.
+/// Most years of a series, how far from year 0 it begins, largest area in mm² and largest height in mm.
 const MOST_YEARS: usize = 100_000;
+const FARTHEST_YEAR: u32 = 10_000;
 const LARGEST: f64 = 1e12;
 
 impl RingSeries {
@@ -30,7 +31,7 @@ impl RingSeries {
         };
         (1..=MOST_YEARS).contains(&self.areas.len())
             && self.areas.len() == self.heights.len()
-            && i64::from(self.first_year).abs() <= LARGEST as i64
+            && self.first_year.unsigned_abs() <= FARTHEST_YEAR
             && rises(&self.areas)
             && rises(&self.heights)
     }
@@ -134,7 +135,8 @@ mod tests {
     #[test]
     fn only_what_nodes_make_is_sound() {
         assert!(series().is_sound());
-        let unsound: [fn(&mut RingSeries); 6] = [
+        let unsound: [fn(&mut RingSeries); 7] = [
+            |it| it.first_year = i32::MAX,
             |it| it.areas.clear(),
             |it| it.heights.truncate(3),
             |it| it.areas[0] = 0.0,

@@ -155,6 +155,22 @@ fn mistakes_in_an_stl_are_found_at_their_place() {
     }
 }
 
+#[test]
+fn places_of_another_size_than_the_square_are_no_map() {
+    for places in [
+        "vt -1e300 0\nvt -1e300 1\nvt -2e300 0",
+        "vt 0 0\nvt 1e-30 0\nvt 0 1e-30",
+    ] {
+        let text = format!("v 0 0 0\nv 10 0 0\nv 0 10 0\n{places}\nf 1/1 2/2 3/3\n");
+        let mesh = read("it.obj", text, &PLAIN).unwrap();
+        let failure = super::surfaces::on_mesh(&mesh, &[]).unwrap_err();
+        assert_eq!(
+            failure.message,
+            "the places of the mesh are of another size than the square: its map would have no usable scale"
+        );
+    }
+}
+
 /// Bytes that are changed, cut off and put together anew are read or refused: nothing else happens.
 #[test]
 fn broken_files_never_stop_the_program() {

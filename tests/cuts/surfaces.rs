@@ -356,8 +356,10 @@ fn surfaces_that_cannot_be_are_refused() {
     );
     assert_eq!(
         knots(&[0.0; 6]),
-        "the surface would have no length: knots 3 and 4 are both 0"
+        "the surface would have no length: knots 3 and 4 are 0 and 0"
     );
+    let nearer_than_any_slope_can_tell = knots(&[0.0, 0.0, 0.0, 1e-320, 1e-320, 1e-320]);
+    assert!(nearer_than_any_slope_can_tell.starts_with("the surface would have no length"));
     let weights = refused(&[3, 3], &[("weights", Value::List(vec![numbers(&[1.0])]))]);
     assert_eq!(weights, "expected 2 rows of 3 weights, found 1 of 1");
     let text = |text: &str| {

@@ -1,10 +1,10 @@
 //! The kernel against the model in double precision, and what its results do not depend on.
 
 use super::levels::levels;
-use super::{columns, scattered, tree};
+use super::{columns, scattered, skeleton, tree};
 use fearless_simd::Level;
 use glam::DVec3;
-use yosegi::nodes::wood::energy::Reference;
+use yosegi::nodes::wood::energy::{Axis, EnergyModel, Reference};
 
 const REFERENCES: [Reference; 3] = [Reference::Endless, Reference::Middle, Reference::Local];
 
@@ -93,6 +93,21 @@ fn on_charges_and_far_away_numbers_stay_finite() {
                 .map(|rod| rod.start + rod.direction * 100.0),
         );
         points.extend(model.trunk.iter().map(|rod| rod.start));
+        for column in columns(&model, &points, Level::new()) {
+            assert!(
+                column.iter().all(|value| value.is_finite()),
+                "{reference:?}: {column:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn on_the_axis_beyond_the_ends_of_a_trunk_numbers_stay_finite() {
+    let axis = Axis::new(&skeleton(&[[0.0; 3], [0.0, 0.0, 9000.0]]), false).unwrap();
+    let points = [-1e5, 0.0, 50.0, 9000.0, 20_000.0, 1e9].map(|height| DVec3::Z * height);
+    for reference in REFERENCES {
+        let model = EnergyModel::bare(axis.clone(), reference);
         for column in columns(&model, &points, Level::new()) {
             assert!(
                 column.iter().all(|value| value.is_finite()),

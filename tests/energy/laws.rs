@@ -103,3 +103,27 @@ fn without_branches_and_burls_radii_less_waves_rise_along_rays() {
         }
     }
 }
+
+/// Nearer to the axis than a chord lies off it, rings would be those of the chord.
+#[test]
+fn rods_follow_a_curved_trunk_closely() {
+    let trunk = skeleton(&[
+        [0.0, 0.0, 0.0],
+        [200.0, 80.0, 1500.0],
+        [-150.0, 40.0, 3500.0],
+        [60.0, 0.0, 6000.0],
+    ]);
+    let axis = Axis::new(&trunk, false).unwrap();
+    let points = axis.points();
+    assert!(points.len() < 1000, "{}", points.len());
+    for ends in points.windows(2) {
+        let middle = (ends[0] + ends[1]) * 0.5;
+        let off = middle.distance(axis.at(middle.z));
+        assert!(off < 0.006, "{off} mm at {middle}");
+    }
+    let upright = Axis::new(
+        &skeleton(&[[0.0; 3], [0.0, 0.0, 10.0], [0.0, 0.0, 40.0]]),
+        false,
+    );
+    assert_eq!(upright.unwrap().points().len(), 3);
+}

@@ -24,6 +24,9 @@ fn sample(nodes: &str, output: &str, points: &[[f64; 3]]) -> Result<Vec<f32>, St
 const TREE: &str = r#"
     "tree": skeleton(trunk: [(0, 0, 0), (0, 0, 2000)]),
     "rings": ring_series(widths: [4, 3, 2, 1], height: 4000),
+    "tall": skeleton(
+        trunk: [(0, 0, 0), (0, 0, 9000)], branches: [(at: 5000, direction: (1, 0, 0), thickening: 1)],
+    ),
 "#;
 
 #[test]
@@ -125,6 +128,14 @@ fn mistakes_are_told() {
         (
             r#"virtual_energy(skeleton: "tree", rings: "rings", random_burls: 3, burl_depths: (1, 0.5))"#,
             "the smaller number first",
+        ),
+        (
+            r#"virtual_energy(skeleton: "tree", rings: "rings", burls: [(at: (1, 0, 4000), radius: 2)])"#,
+            "above the top of the tree, where there is no bark",
+        ),
+        (
+            r#"virtual_energy(skeleton: "tall", rings: "rings", branch_charges: [0.3])"#,
+            "branch 1: it starts above the top of the tree",
         ),
         (
             r#"ring_series(years: 3)"#,

@@ -376,7 +376,12 @@ fn hard_places_give_sound_rings_or_say_why_not() {
     lean.months[48..60]
         .iter_mut()
         .for_each(|month| month.temperature = -20.0);
-    let rings = grown(&Arc::new(lean), 0, &[("reserve", Value::Number(0.0))]).unwrap();
+    let lean = Arc::new(lean);
+    let without_reserves = ("reserve", Value::Number(0.0));
+    let rings = grown(&lean, 0, std::slice::from_ref(&without_reserves)).unwrap();
+    let only = [("from", Value::Whole(1904)), ("to", Value::Whole(1904))];
+    let bare = grown(&lean, 0, &[&only[..], &[without_reserves]].concat()).unwrap_err();
+    assert_eq!(bare.message, ice.message);
     let widths = rings.widths();
     assert!(
         rings.is_sound() && widths[4] > 0.0 && widths[4] < 0.03 * widths[3],

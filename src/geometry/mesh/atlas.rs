@@ -130,7 +130,7 @@ fn repeats(corners: [DVec2; 3]) -> impl Iterator<Item = [DVec2; 3]> {
     let [low, high] = bounds(corners);
     // What only touches the square from outside does not show.
     let range = |low: f64, high: f64| {
-        let (first, last) = (low.floor() as i64, high.ceil() as i64 - 1);
+        let (first, last) = (low.floor() as i64, (high.ceil() - 1.0) as i64);
         first
             ..=last
                 .max(first)

@@ -15,6 +15,7 @@ use crate::key::{Key, KeyHasher};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Domain, Type, Value};
 use glam::{DAffine3, DVec2, DVec3};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// Cuts a solid in the shape of a mesh.
@@ -44,6 +45,9 @@ pub static KIND: Kind = Kind {
     build,
 };
 
+/// Sides in mm that a piece may have.
+const SIDES: RangeInclusive<f64> = 1e-6..=1e9;
+
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let mesh = inputs.mesh("mesh");
     let place = placed(inputs)?;
@@ -61,6 +65,10 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
             "mesh",
             "the triangles of the mesh have no area",
         ));
+    }
+    if !SIDES.contains(&side) {
+        let message = "the places of the mesh are of another size than the square: its map would have no usable scale";
+        return Err(Failure::of_input("mesh", message).with_hint("read it with `places: box`"));
     }
     let bytes = postcard::to_stdvec(&**mesh).expect("a mesh is plain data");
     let surface = OnMesh {

@@ -179,11 +179,6 @@ fn growths(inputs: &Inputs<'_>, climate: &Climate) -> Result<(i32, Vec<f64>), Fa
         let message = "the weather is too short: the window of its only year ends in the next";
         return Err(Failure::of_input("climate", message));
     }
-    if sums.iter().sum::<f64>() <= 0.0 {
-        let message = "in this weather nothing grows: it is too cold or too dry in every month";
-        let hint = "lower the first of `temperature` or of `moisture`, or widen the `window`";
-        return Err(Failure::of_input("climate", message).with_hint(hint));
-    }
     let grown = with_reserves(&sums, inputs.number("reserve"));
     let last = climate.first_year + grown.len() as i32 - 1;
     let year = |name: &'static str, otherwise: i32| -> Result<i32, Failure> {
@@ -203,7 +198,13 @@ fn growths(inputs: &Inputs<'_>, climate: &Climate) -> Result<(i32, Vec<f64>), Fa
         return Err(Failure::of_input("to", message));
     }
     let index = |year: i32| (year - climate.first_year) as usize;
-    Ok((from, grown[index(from)..=index(to)].to_vec()))
+    let chosen = &grown[index(from)..=index(to)];
+    if chosen.iter().sum::<f64>() <= 0.0 {
+        let message = "in this weather nothing grows: it is too cold or too dry in every month";
+        let hint = "lower the first of `temperature` or of `moisture`, or widen the `window`";
+        return Err(Failure::of_input("climate", message).with_hint(hint));
+    }
+    Ok((from, chosen.to_vec()))
 }
 
 fn thresholds(inputs: &Inputs<'_>, name: &'static str) -> Result<[f64; 2], Failure> {

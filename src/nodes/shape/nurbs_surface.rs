@@ -42,13 +42,15 @@ pub static KIND: Kind = Kind {
             Type::List(&Type::Number(Unit::One)),
             "Knots along u, rising: as many as the points in a row, the degree and one more.",
         )
-        .optional(),
+        .optional()
+        .range(-1e6, 1e6),
         Input::new(
             "knots_v",
             Type::List(&Type::Number(Unit::One)),
             "Knots along v.",
         )
-        .optional(),
+        .optional()
+        .range(-1e6, 1e6),
         INSIDE_OUT,
         GUTTER,
     ],
@@ -65,6 +67,9 @@ pub static KIND: Kind = Kind {
     })"##,
     build,
 };
+
+/// From the first to the last inner knot it is as far as this, at least: slopes stay finite.
+const SHORTEST: f64 = 1e-6;
 
 fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let rows = rows(inputs, "points", |item| match item {
@@ -194,11 +199,12 @@ fn knots(
             knots[index - 1]
         ));
     }
-    if knots[degree] >= knots[count] {
+    if knots[count] - knots[degree] < SHORTEST {
         return refuse(format!(
-            "the surface would have no length: knots {} and {} are both {}",
+            "the surface would have no length: knots {} and {} are {} and {}",
             degree + 1,
             count + 1,
+            knots[degree],
             knots[count]
         ));
     }

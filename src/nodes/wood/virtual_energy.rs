@@ -42,7 +42,7 @@ use crate::value::{Domain, RingSeries, Type, Unit, Value};
 /// Growth time by virtual energy.
 pub static KIND: Kind = Kind {
     name: "virtual_energy",
-    version: 1,
+    version: 2,
     about: "When the wood at each point grew, by equal energy around a trunk, its branches and burls, with waves in \
             the rings.",
     source: "Shibasaki & Aoyama, section 2.3; references, charges and the fading of waves are our own construction",
@@ -180,7 +180,7 @@ fn build(inputs: &Inputs<'_>, context: &Build<'_>) -> Result<Vec<Value>, Failure
         .map_err(|(index, reason)| {
             let message = format!("branch {}: {reason}", index + 1);
             Failure::of_input("skeleton", message)
-                .with_hint("state the charges with `branch_charges`, or let the tree grow taller")
+                .with_hint("state its `length` and the charges with `branch_charges`, or let the tree grow taller")
         })?;
     model.burls = burls(inputs, &model.axis, rings)?;
     if inputs.whole("random_burls") > 0 {

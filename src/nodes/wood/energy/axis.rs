@@ -1,11 +1,15 @@
 //! The centre line of a trunk: curved through its nodes, or straight from node to node.
 
-use crate::geometry::spline::{CurveError, TrunkCurve};
+use crate::geometry::spline::{CurveError, Piece, TrunkCurve};
 use crate::value::Skeleton;
 use glam::DVec3;
 
-/// A curve is charged in straight pieces; so many stand for one piece of it.
-const RODS_IN_A_PIECE: usize = 8;
+/// A curve is charged in straight rods, whose middles lie this far off it in mm, at most. Energies near the axis change
+/// by twice the quotient of that and the distance from it.
+const SAG: f64 = 0.005;
+
+/// Most rods that stand for one piece of a curve, however much it bends.
+const MOST_RODS: f64 = 256.0;
 
 /// The centre line of a trunk.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,21 +81,33 @@ impl Axis {
     pub fn points(&self) -> Vec<DVec3> {
         match self {
             Axis::Straight(nodes) => nodes.clone(),
-            // Two nodes make a straight line.
-            Axis::Curved(curve) if curve.nodes().len() == 2 => curve.nodes().to_vec(),
             Axis::Curved(curve) => {
-                let within = |ends: &[DVec3]| {
+                let pieces = curve.pieces();
+                // Before the first segment a straight piece comes from below.
+                let within = |(ends, piece): (&[DVec3], &Piece)| {
                     let [low, high] = [ends[0].z, ends[1].z];
-                    let shares =
-                        (0..RODS_IN_A_PIECE).map(|rod| rod as f64 / RODS_IN_A_PIECE as f64);
-                    shares.map(move |share| low + share * (high - low))
+                    let rods = rods(piece, high - low);
+                    (0..rods).map(move |rod| low + rod as f64 / rods as f64 * (high - low))
                 };
-                let heights = curve.nodes().windows(2).flat_map(within);
-                let heights = heights.chain([curve.heights()[1]]);
+                let segments = curve.nodes().windows(2).zip(&pieces[1..]);
+                let heights = segments.flat_map(within).chain([curve.heights()[1]]);
                 heights.map(|height| curve.at(height)).collect()
             }
         }
     }
+}
+
+/// How many rods stand for a piece of a curve that is `rise` mm high.
+///
+/// A chord lies off its curve by an eighth of the second derivative times the square of its length; that derivative is
+/// linear along a piece, so it is largest at an end.
+fn rods(piece: &Piece, rise: f64) -> usize {
+    let [_, _, c2, c3] = piece.coefficients;
+    let bend = (c2 * 2.0)
+        .length()
+        .max((c2 * 2.0 + c3 * (6.0 * rise)).length());
+    let count = rise * (bend / (8.0 * SAG)).sqrt();
+    count.ceil().clamp(1.0, MOST_RODS) as usize
 }
 
 /// Between which shares of its length line `index` of `count` holds feet: the first and the last go on.

@@ -43,7 +43,7 @@ pub fn branch_rods(
             charge: 1.0,
         };
         let given = charges.and_then(|charges| charges.get(index));
-        if given.is_none() && age <= 0.0 {
+        if age <= 0.0 && (given.is_none() || rod.length <= 0.0) {
             let message = "it starts above the top of the tree, where it has no age".to_owned();
             return Err((index, message));
         }
@@ -61,8 +61,11 @@ pub fn branch_rods(
 /// centre, which is `depth` mm from the axis: `q = 2 d ln((c + d) / R)`, from V1.
 ///
 /// # Errors
-/// If the bark is there already.
+/// If the bark is there already, or if there is none.
 pub fn swelling_charge(depth: f64, radius: f64, bark: f64) -> Result<f64, String> {
+    if bark <= 0.0 {
+        return Err("it is above the top of the tree, where there is no bark to swell".into());
+    }
     let charge = 2.0 * radius * libm::log((depth + radius) / bark);
     if charge > 0.0 {
         return Ok(charge);

@@ -248,6 +248,9 @@ impl Run<'_> {
     }
 }
 
+/// Offsets shorter than this in mm have no direction; quotients by it are finite.
+const NO_LENGTH: f32 = 1e-20;
+
 /// Writes where points would be if rings were circles about an upright axis: at the radius of their ring.
 #[simd]
 fn bare_places<S: Simd>(
@@ -262,7 +265,8 @@ fn bare_places<S: Simd>(
         let load = |column: &[f32]| S::f32s::from_slice(simd, &column[range.clone()]);
         let (dx, dy) = (load(dx), load(dy));
         let ring = (load(radius) - load(wave)).max(0.0);
-        let scale = ring / (dx * dx + dy * dy).sqrt().max(f32::MIN_POSITIVE);
+        // On the axis, beyond the ends of a rod, rings have a radius but no direction.
+        let scale = ring / (dx * dx + dy * dy).sqrt().max(NO_LENGTH);
         (dx * scale).store_slice(&mut x[range.clone()]);
         (dy * scale).store_slice(&mut y[range.clone()]);
     }
