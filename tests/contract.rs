@@ -268,6 +268,26 @@ fn rings_of_weather_and_their_plot_keep_the_contract() {
     keeps_it_from_1024("oxford_oak", "plot", [240.0, 120.0], 10.0);
 }
 
+#[test]
+fn figures_of_skeletons_keep_the_contract() {
+    keeps_it_from_1024("momoi_12", "c_curved_axis", [560.0, 420.0], 2.0);
+    keeps_it_from_1024("momoi_12", "d_curved_plain", [560.0, 420.0], 3.0);
+    keeps_it_from_1024("momoi_13", "a_quarter", [300.0, 360.0], 3.0);
+}
+
+#[test]
+#[ignore = "takes minutes: each pixel of fibres is many samples"]
+fn figures_of_virtual_energy_keep_the_contract() {
+    keeps_it_from_1024("shibasaki_07", "plain", [120.0, 240.0], 3.0);
+    keeps_it_from_1024("shibasaki_08", "veneer", [900.0, 300.0], 3.0);
+    keeps_it_from_1024("shibasaki_09", "veneer", [900.0, 300.0], 3.0);
+    keeps_it_from_1024("shibasaki_10", "across", [220.0, 240.0], 3.0);
+    keeps_it_from_1024("shibasaki_11", "slice", [240.0, 400.0], 3.0);
+    keeps_it_from_1024("shibasaki_12", "veneer", [640.0, 400.0], 3.0);
+    keeps_it_from_1024("shibasaki_13", "slice", [240.0, 240.0], 3.0);
+    keeps_it_from_1024("shibasaki_14", "slice", [300.0, 420.0], 3.0);
+}
+
 /// Near, and not within: a ramp sees noise that has been averaged within the pixel, and cannot know how much
 /// it varied there. Without filtering it is far off.
 #[test]
@@ -285,7 +305,13 @@ fn a_chain_of_noise_ramps_and_heights_stays_near_the_contract() {
 
 /// Recipes that show things in space: a view has no more detail to keep than its pixels, whose edges are tested in
 /// `tests/view`.
-const VIEWS: [&str; 3] = ["log_cut_open", "board_of_six_faces", "spot_in_wood"];
+const VIEWS: [&str; 5] = [
+    "log_cut_open",
+    "board_of_six_faces",
+    "spot_in_wood",
+    "shibasaki_05",
+    "shibasaki_06",
+];
 
 #[test]
 fn every_recipe_is_here() {

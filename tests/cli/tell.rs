@@ -133,7 +133,14 @@ fn nodes_lists_and_describes_kinds() {
     assert_eq!(native, kinds);
     assert_eq!(
         compounds,
-        ["", "Compounds", "streaked", "tree_wood", "wavy"]
+        [
+            "",
+            "Compounds",
+            "figured_wood",
+            "streaked",
+            "tree_wood",
+            "wavy"
+        ]
     );
     let growth = stdout(&place.call(&["nodes", "growth_field"]));
     for part in [
