@@ -144,7 +144,7 @@ fn meshes_and_materials_that_cannot_be_cut_are_refused() {
     let failure = on_mesh(&Arc::new(without), &[]).unwrap_err();
     assert_eq!(
         failure.message,
-        "the triangles of the mesh have no area on its square"
+        "the mesh has no places on a square, so nothing says how a map lies on it"
     );
     let Value::Material(solid) = where_one_is() else {
         unreachable!()

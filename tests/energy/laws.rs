@@ -119,7 +119,7 @@ fn rods_follow_a_curved_trunk_closely() {
     for ends in points.windows(2) {
         let middle = (ends[0] + ends[1]) * 0.5;
         let off = middle.distance(axis.at(middle.z));
-        assert!(off < 0.006, "{off} mm at {middle}");
+        assert!(off < 0.012, "{off} mm at {middle}");
     }
     let upright = Axis::new(
         &skeleton(&[[0.0; 3], [0.0, 0.0, 10.0], [0.0, 0.0, 40.0]]),

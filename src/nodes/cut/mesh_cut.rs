@@ -56,7 +56,9 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         Failure::of_input("mesh", message).with_hint("read it with `places: box`")
     };
     if mesh.coordinates.is_empty() {
-        return Err(no_map());
+        let message = "the mesh has no places on a square, so nothing says how a map lies on it";
+        return Err(Failure::of_input("mesh", message)
+            .with_hint("link to a mesh of `mesh_from_file`, `mesh_from_patches` or `block`"));
     }
     let atlas = Atlas::new(mesh, &mut || build.go_on())?;
     let side = atlas.side(&place.matrix3).ok_or_else(no_map)?;

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// A curve is charged in straight rods, whose middles lie this far off it in mm, at most. Energies near the axis change
 /// by twice the quotient of that and the distance from it.
-const SAG: f64 = 0.005;
+const SAG: f64 = 0.01;
 
 /// Most rods that stand for one piece of a curve, however much it bends.
 const MOST_RODS: f64 = 256.0;
