@@ -57,8 +57,10 @@ fn refused(text: &str, edit: &Edit) -> Diagnostic {
 /// The recipe in a folder beside the compounds of the gallery.
 fn load(text: &str) -> Graph {
     let world = Memory::default();
-    let compound = Disk.read(Path::new("graphs/nodes/cherry.ron")).unwrap();
-    world.insert("nodes/cherry.ron", compound);
+    for name in ["cherry.ron", "hinoki_trunk.ron"] {
+        let compound = Disk.read(&Path::new("graphs/nodes").join(name)).unwrap();
+        world.insert(Path::new("nodes").join(name), compound);
+    }
     world.insert("a.ron", text);
     match yosegi::graph::load(&world, Path::new("a.ron"), &Settings::default()) {
         Ok(loaded) => loaded.graph,

@@ -33,6 +33,7 @@ impl Workshop {
             "measured_tree/tree.csv",
             "weather/oxforddata.txt",
             "spot/spot.obj",
+            "bowl/bowl.stl",
             "teapot/teapot.txt",
         ] {
             files.insert(Path::new(folder).join(asset), asset_bytes(asset));
@@ -65,8 +66,10 @@ impl Workshop {
         let world = Memory::default();
         let path = self.folder.join("recipe.ron");
         world.insert(&path, recipe);
-        let compound = fs::read("graphs/nodes/cherry.ron").unwrap();
-        world.insert(self.folder.join("nodes/cherry.ron"), compound);
+        for name in ["cherry.ron", "hinoki_trunk.ron"] {
+            let compound = fs::read(Path::new("graphs/nodes").join(name)).unwrap();
+            world.insert(self.folder.join("nodes").join(name), compound);
+        }
         load(&world, &path, &Settings::default())
             .unwrap_or_else(|wrong| panic!("{}", yosegi::diagnostics::render_all(&wrong)))
             .graph

@@ -137,7 +137,7 @@ const BURL: &[Input] = &[
     Input::number(
         "radius",
         Unit::Millimetre,
-        "Instead: how far beyond its centre it swells the bark.",
+        "Instead: how far beyond its centre it swells the bark, with the endless reference.",
     )
     .optional()
     .range(1e-3, 1e5),

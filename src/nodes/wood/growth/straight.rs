@@ -18,7 +18,7 @@ use glam::DVec3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct StraightTrunk {
     nodes: Vec<DVec3>,
-    /// Length of the way from the first node to each, in mm.
+    /// Length of the way from the ground to each node, in mm.
     paths: Vec<f64>,
 }
 
@@ -56,13 +56,14 @@ pub struct Seen {
 impl StraightTrunk {
     /// The trunk through nodes, of which there are at least two and none the same as the one before.
     pub fn through(nodes: &[DVec3]) -> StraightTrunk {
-        let mut path = 0.0;
+        let first = nodes[0].z.max(0.0);
+        let mut path = first;
         let steps = nodes.windows(2).map(|ends| {
             path += ends[0].distance(ends[1]);
             path
         });
         StraightTrunk {
-            paths: std::iter::once(0.0).chain(steps).collect(),
+            paths: std::iter::once(first).chain(steps).collect(),
             nodes: nodes.to_vec(),
         }
     }
@@ -72,7 +73,7 @@ impl StraightTrunk {
         &self.nodes
     }
 
-    /// Length in mm of the way from the first node to each.
+    /// Length in mm of the way to each node from the ground; a trunk that starts below it grew from its first node.
     pub fn paths(&self) -> &[f64] {
         &self.paths
     }
