@@ -4,6 +4,7 @@
 
 mod bytes;
 mod charts;
+mod idle;
 mod meshes;
 mod odd_files;
 mod placed;

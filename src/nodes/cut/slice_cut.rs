@@ -108,8 +108,19 @@ struct Plane {
 
 impl Plane {
     fn new(inputs: &Inputs<'_>) -> Result<Plane, Failure> {
-        let origin = inputs.vector("origin");
-        if inputs.choice("cut") == "plane" {
+        let (origin, cut) = (inputs.vector("origin"), inputs.choice("cut"));
+        let is_idle = |name, cuts: &[&str]| inputs.number(name) != 0.0 && !cuts.contains(&cut);
+        for (name, cuts) in [
+            ("offset", &["plain_sawn"][..]),
+            ("turn", &["plain_sawn", "quarter_sawn", "end_grain"]),
+        ] {
+            if is_idle(name, cuts) {
+                let message = format!("`{name}` is set, but does nothing in a cut that is `{cut}`");
+                let hint = format!("remove it; it is for {}", cuts.join(", "));
+                return Err(Failure::of_input(name, message).with_hint(hint));
+            }
+        }
+        if cut == "plane" {
             return Plane::free(inputs, origin);
         }
         for name in ["across", "along"] {

@@ -94,6 +94,12 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let format = MapFormat::from_name(inputs.choice("format"))
         .expect("the format is one of the names that the input declares");
     let channels = inputs.names("channels").to_vec();
+    if channels.is_empty() {
+        let message = "no channel is listed, so nothing would be written";
+        return Err(
+            Failure::of_input("channels", message).with_hint("write `channels: [base_color]`")
+        );
+    }
     let ranges = ranges(inputs)?;
     for channel in ranges.keys() {
         known_channel("ranges", channel, material)?;

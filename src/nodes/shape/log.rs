@@ -63,6 +63,10 @@ pub static KIND: Kind = Kind {
 /// Cells along the longest side of the box, if the recipe does not say.
 const CELLS: f64 = 150.0;
 
+/// The share of the age by which the surface lies beneath it: between its points it is flat, and there the wood of the
+/// next year would show in places.
+const BENEATH: f64 = 1e-3;
+
 /// Points that a thread evaluates in one go.
 const BLOCK: usize = 4096;
 
@@ -86,7 +90,11 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let evaluate = |points: &[DVec3]| sampler.evaluate(points);
     let surface = Grid::new(low, high, cell).surface(&evaluate);
     let surface = surface.map_err(|reason| explained(reason, inputs, cell))?;
-    let normals = sampler.normals(&surface.points, 0.25 * cell);
+    // What is inside jumps from 0 to 1 and has no slope.
+    let normals = match inputs.get("inside") {
+        Some(_) => Some(facing(&surface)),
+        None => sampler.normals(&surface.points, 0.25 * cell),
+    };
     build.go_on()?;
     let normals = normals.ok_or_else(|| Failure::new("the run was cancelled"))?;
     Ok(vec![Value::Mesh(Arc::new(mesh(surface, normals)))])
@@ -99,7 +107,7 @@ fn level(inputs: &Inputs<'_>) -> Result<(Field, f64, f64), Failure> {
         inputs.optional_field("inside"),
     ) {
         (Some(time), None) => match inputs.get("age") {
-            Some(_) => Ok((time, -1.0, inputs.number("age"))),
+            Some(_) => Ok((time, -1.0, inputs.number("age") * (1.0 - BENEATH))),
             None => Err(Failure::of_input("time", "`time` is set, but no `age`")
                 .with_hint("say of which year the outermost wood is: `age: 40`")),
         },
@@ -187,6 +195,22 @@ impl Sampler<'_> {
         let normal = |slope: DVec3| (-slope).try_normalize().unwrap_or(DVec3::Z);
         Some(slopes.into_iter().map(normal).collect())
     }
+}
+
+/// Unit normals, outwards, as means of those of the triangles around by their areas; sawn ones do not count.
+fn facing(surface: &Surface) -> Vec<DVec3> {
+    let mut sums = vec![DVec3::ZERO; surface.points.len()];
+    let triangles = surface.triangles.iter().zip(&surface.sides);
+    for (triangle, _) in triangles.filter(|(_, side)| **side == 6) {
+        let [a, b, c] = triangle.map(|point| surface.points[point as usize]);
+        let area = (b - a).cross(c - a);
+        triangle
+            .iter()
+            .for_each(|point| sums[*point as usize] += area);
+    }
+    sums.into_iter()
+        .map(|sum| sum.try_normalize().unwrap_or(DVec3::Z))
+        .collect()
 }
 
 /// The mesh, with the box's own normals where it is sawn off; every sawn face is a chart.

@@ -12,7 +12,7 @@
 mod obj;
 mod stl;
 
-use super::scan::{self, UNIT, UP, refuse};
+use super::scan::{self, UNIT, UP};
 use crate::geometry::mesh::{self, Finish, Soup};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Type, Unit, Value};
@@ -69,6 +69,10 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let bytes = &inputs.file("file").bytes;
     let mut soup = match is_obj(inputs) {
         true => obj::read(bytes, &parts(inputs), inputs, build)?,
+        false if !inputs.list("parts").is_empty() => {
+            let message = "`parts` is set, but an STL file has no parts with names";
+            return Err(Failure::of_input("parts", message).with_hint("remove `parts`"));
+        }
         false => stl::read(bytes, inputs, build)?,
     };
     scan::place(inputs, &mut soup.points)?;
@@ -81,7 +85,10 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     };
     let (mesh, left_out) = mesh::assemble(soup, finish, &mut || build.go_on())?;
     if mesh.triangles.is_empty() {
-        return Err(refuse("the file has no triangle with an area"));
+        let message = "the file has no triangle with an area";
+        let hint =
+            "it is read as STL or OBJ; patches of curved surfaces are for `patches_from_file`";
+        return Err(Failure::of_input("file", message).with_hint(hint));
     }
     if left_out > 0 {
         inputs.warn(format!("{left_out} triangles without an area are left out"));
