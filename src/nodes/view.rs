@@ -7,6 +7,7 @@
 
 mod camera;
 mod light;
+mod outline;
 mod picture;
 mod rays;
 mod record;
@@ -21,6 +22,7 @@ use self::record::Record;
 use self::scene::{Cut, MOST_CUTS, Point, Scene, Thing};
 use self::shade::Shade;
 use crate::field::{Block, Field, Kernel};
+use crate::geometry::mesh::{Open, check_closed};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::surface::material::default_of;
@@ -35,7 +37,7 @@ const CHANNEL: &str = "view";
 /// Shaded pictures.
 pub static KIND: Kind = Kind {
     name: "view",
-    version: 1,
+    version: 2,
     about: "Draws a shaded picture of a mesh and its material, cut open by planes if you like; stands in `outputs`.",
     source: "own construction; shading after Walter and others 2007, Karis 2013, Fdez-Agüera 2019",
     inputs: &[
@@ -200,10 +202,17 @@ fn stage(inputs: &Inputs<'_>, size: [f64; 2]) -> Result<Stage, Failure> {
         let message = format!("expected at most {MOST_CUTS} cuts, found {}", cuts.len());
         return Err(Failure::of_input("cuts", message));
     }
+    if !cuts.is_empty() {
+        check_closed(inputs.mesh("on")).map_err(not_closed)?;
+    }
     let side = side(&cuts);
     let is_notch = inputs.choice("remove") == "common";
     let thing = Thing::new(Arc::clone(inputs.mesh("on")), cuts, is_notch);
     let points = thing.outline();
+    if points.is_empty() {
+        return Err(Failure::of_input("cuts", "the cuts leave nothing to see")
+            .with_hint("a `normal` points towards what is removed: turn one round"));
+    }
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let reach = (high - low).length();
@@ -234,6 +243,26 @@ fn stage(inputs: &Inputs<'_>, size: [f64; 2]) -> Result<Stage, Failure> {
         lights,
         disc: Disc::new(),
     })
+}
+
+/// Why a mesh cannot be cut.
+fn not_closed(open: Open) -> Failure {
+    match open {
+        Open::Edges { count, place } => {
+            let [x, y, z] = place.to_array();
+            let message = format!(
+                "the mesh is not closed, so it has no inside that cuts could show: {count} of its edges lie open, \
+                 one at ({x:.3}, {y:.3}, {z:.3})"
+            );
+            Failure::of_input("on", message)
+                .with_hint("close the mesh where it is made, or remove the `cuts`")
+        }
+        Open::InsideOut => Failure::of_input(
+            "on",
+            "the mesh is inside out: its triangles run clockwise seen from outside",
+        )
+        .with_hint("turn its triangles round where it is made"),
+    }
 }
 
 /// One wide light from the left, above and behind the camera.

@@ -33,6 +33,30 @@ fn views_that_show_nothing_are_refused() {
             "both `position` and `side` of the camera are set",
         ),
         (
+            "camera: (up: (0, 0, 0))",
+            "the direction `up` of the camera has no length",
+        ),
+        (
+            "camera: (height: 40)",
+            "`height` is set, but the camera is a perspective",
+        ),
+        (
+            "camera: (projection: orthographic, angle: 24)",
+            "`angle` is set, but the camera is orthographic",
+        ),
+        (
+            "cuts: [(point: (0, 31, 0), normal: (0, -1, 0))]",
+            "the cuts leave nothing to see",
+        ),
+        (
+            "cuts: [(point: (0, 5, 0), normal: (0, -1, 0)), (point: (0, 5, 0), normal: (0, 1, 0))]",
+            "the cuts leave nothing to see",
+        ),
+        (
+            "cuts: [(point: (1, 31, 0), normal: (0, -1, 0)), (point: (-21, 0, 0), normal: (1, 0, 0))], remove: common",
+            "the cuts leave nothing to see",
+        ),
+        (
             "cuts: [(point: (0, 0, 0), normal: (0, 0, 0))]",
             "the `normal` of cut 1 has no length",
         ),
@@ -112,5 +136,43 @@ fn logs_that_are_nowhere_are_refused() {
     assert!(
         refused.starts_with("the surface with details of 0.1 mm takes "),
         "{refused}"
+    );
+}
+
+/// A tetrahedron in a file, with the triangles given by their corners.
+fn tetrahedron(faces: &str) -> String {
+    let points = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\n";
+    let text = format!("{points}{faces}");
+    let nodes = r#""thing": material(base_color: (0.5, 0.5, 0.5)), "shape": mesh_from_file(file: "shape.obj", unit: mm)"#;
+    let cut = "pixels: (8, 8), cuts: [(point: (1, 1, 1), normal: (1, 0, 0))]";
+    let workshop = workshop();
+    workshop
+        .files
+        .insert(workshop.folder.join("shape.obj"), text);
+    let run = workshop.render(&recipe(nodes, cut), &[], Cancel::new(), &|_| {});
+    match run.result {
+        Ok(_) => String::new(),
+        Err(error) => error.diagnostics()[0].message.clone(),
+    }
+}
+
+#[test]
+fn only_closed_meshes_are_cut() {
+    let outwards = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    assert_eq!(tetrahedron(outwards), "");
+    assert_eq!(
+        tetrahedron("f 1 3 2\nf 1 2 4\nf 1 4 3\n"),
+        "the mesh is not closed, so it has no inside that cuts could show: 3 of its edges lie open, \
+         one at (4.500, 4.500, 0.000)"
+    );
+    // One triangle is turned.
+    assert_eq!(
+        tetrahedron("f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 4 3\n"),
+        "the mesh is not closed, so it has no inside that cuts could show: 3 of its edges lie open, \
+         one at (4.500, 4.500, 0.000)"
+    );
+    assert_eq!(
+        tetrahedron("f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n"),
+        "the mesh is inside out: its triangles run clockwise seen from outside"
     );
 }

@@ -229,3 +229,50 @@ fn the_bytes_depend_on_nothing_but_the_recipe() {
         assert!(found == expected, "{level:?}");
     }
 }
+
+/// Columns and rows of a picture before black in which something is seen: the first and the last.
+fn bounds(seen: &Picture) -> [u32; 4] {
+    let is_seen = |x: u32, y: u32| seen.at(x, y) != [0.0; 3];
+    let columns = (0..seen.width).filter(|x| (0..seen.height).any(|y| is_seen(*x, y)));
+    let rows = (0..seen.height).filter(|y| (0..seen.width).any(|x| is_seen(x, *y)));
+    let (columns, rows): (Vec<u32>, Vec<u32>) = (columns.collect(), rows.collect());
+    let ends = |seen: &[u32]| (seen[0], seen[seen.len() - 1]);
+    let ((left, right), (top, bottom)) = (ends(&columns), ends(&rows));
+    [left, right, top, bottom]
+}
+
+#[test]
+fn a_thing_of_few_triangles_is_framed_whole_where_it_is_cut() {
+    for (cuts, camera) in [
+        ("cuts: [(point: (0, 15, 0), normal: (0, -1, 0))]", ""),
+        ("cuts: [(point: (0, 3, 0), normal: (0, -1, 0))]", ""),
+        // A room in the middle that meets no triangle.
+        (
+            "cuts: [(point: (9, 9, 6), normal: (1, 0, 0)), (point: (9, 9, 6), normal: (0, 1, 0)), (point: (9, 9, 6), normal: (0, 0, 1)),
+                    (point: (-9, 3, -7), normal: (-1, 0, 0)), (point: (-9, 3, -7), normal: (0, -1, 0)), (point: (-9, 3, -7), normal: (0, 0, -1))]",
+            "",
+        ),
+        // What is left reaches furthest where three cuts meet.
+        (
+            "cuts: [(point: (0, 10, -4), normal: (-1, 0, 0)), (point: (0, 10, -4), normal: (0, -1, 0)), (point: (0, 10, -4), normal: (0, 0, 1))]",
+            "camera: (side: (1, 1, 1)),",
+        ),
+        (
+            "cuts: [(point: (0, 9, 0), normal: (0, -1, 0)), (point: (-1e3, 0, 0), normal: (1, 0, 0))], remove: common",
+            "",
+        ),
+    ] {
+        let seen = picture(&recipe(
+            r#""thing": material(base_color: (0.8, 0.2, 0.2)), "shape": block(size: (40, 20), thickness: 30)"#,
+            &format!("{camera} {cuts}, pixels: (100, 80), samples: 16, ground: false, background: (0, 0, 0)"),
+        ));
+        let [left, right, top, bottom] = bounds(&seen);
+        let (beside, above) = ([left, 99 - right], [top, 79 - bottom]);
+        assert!(
+            beside.iter().chain(&above).all(|free| *free >= 3),
+            "{cuts}: {beside:?} {above:?}"
+        );
+        let is_full = beside.iter().all(|free| *free <= 8) || above.iter().all(|free| *free <= 7);
+        assert!(is_full, "{cuts}: {beside:?} {above:?}");
+    }
+}

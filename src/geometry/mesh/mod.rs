@@ -2,12 +2,14 @@
 
 mod atlas;
 mod charts;
+mod closed;
 mod normals;
 mod overlap;
 mod packing;
 mod unwrap;
 
 pub(crate) use atlas::Atlas;
+pub(crate) use closed::{Open, check_closed};
 
 use crate::value::{Mesh, Triangle};
 use glam::{DVec2, DVec3};

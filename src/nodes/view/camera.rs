@@ -39,9 +39,9 @@ pub(super) const CAMERA: &[Input] = &[
     Input::number(
         "angle",
         Unit::Degree,
-        "Field of view of a perspective, along the picture's height.",
+        "Field of view of a perspective, along the picture's height; left out, 24.",
     )
-    .default("24")
+    .optional()
     .range(0.1, 150.0),
     Input::number(
         "height",
@@ -94,12 +94,14 @@ impl Camera {
                 .ok_or_else(|| failure("the direction `side` of the camera has no length"))?,
             (None, None) => side,
         };
-        let up = stated.vector("up").unwrap_or(DVec3::Z).normalize_or_zero();
+        let up = stated.vector("up").unwrap_or(DVec3::Z).try_normalize();
+        let up = up.ok_or_else(|| failure("the direction `up` of the camera has no length"))?;
         let right = up.cross(back).try_normalize().ok_or_else(|| {
             failure("the camera looks along its `up`, so nothing says what is up in the picture")
                 .with_hint("set `up: (0, 1, 0)`")
         })?;
         let is_perspective = stated.choice("projection") != Some("orthographic");
+        check_scale(stated, is_perspective)?;
         let angle = stated.number("angle").unwrap_or(24.0).to_radians();
         let mut camera = Camera {
             position: middle,
@@ -224,6 +226,26 @@ impl Camera {
             .whole(i64::from(self.is_perspective))
             .number(self.size[0])
             .number(self.size[1]);
+    }
+}
+
+/// A perspective has its scale from `angle`, an orthographic picture from `height`.
+fn check_scale(stated: &Record<'_>, is_perspective: bool) -> Result<(), Failure> {
+    let (other, message, hint) = match is_perspective {
+        true => (
+            "height",
+            "`height` is set, but the camera is a perspective",
+            "set `projection: orthographic`, or state `angle` instead",
+        ),
+        false => (
+            "angle",
+            "`angle` is set, but the camera is orthographic",
+            "set `projection: perspective`, or state `height` instead",
+        ),
+    };
+    match stated.number(other) {
+        Some(_) => Err(Failure::of_input("camera", message).with_hint(hint)),
+        None => Ok(()),
     }
 }
 

@@ -3,6 +3,7 @@
 //! A thing is a mesh. Behind a cutting plane its inside is seen if the first triangle that a ray meets from there on
 //! is left through, not entered: then the ray was inside, and it meets the plane.
 
+use super::outline;
 use crate::geometry::hierarchy::{Hierarchy, Meeting, Ray};
 use crate::key::{Key, KeyHasher};
 use crate::value::{Mesh, Triangle};
@@ -21,6 +22,13 @@ pub(super) struct Cut {
     pub(super) point: DVec3,
     /// Towards what is removed; of length 1.
     pub(super) normal: DVec3,
+}
+
+impl Cut {
+    /// How far a point lies before the plane.
+    pub(super) fn height(&self, point: DVec3) -> f64 {
+        self.normal.dot(point - self.point)
+    }
 }
 
 /// A thing.
@@ -161,30 +169,37 @@ impl Thing {
     /// The boxes over its triangles, made when the first ray comes: a picture that is there needs none.
     fn hierarchy(&self) -> &Hierarchy {
         self.hierarchy.get_or_init(|| {
-            let corners = |triangle: &Triangle| {
-                triangle
-                    .points
-                    .map(|index| self.mesh.points[index as usize])
-            };
-            Hierarchy::new(self.mesh.triangles.iter().map(corners))
+            let triangles = self.mesh.triangles.iter();
+            Hierarchy::new(triangles.map(|triangle| outline::corners(&self.mesh, triangle)))
         })
     }
 
-    /// Points that a picture has to show: those that are left, or all if none are.
+    /// Points that a picture has to show: the outermost ones of what is left are among them. None if nothing is.
     pub(super) fn outline(&self) -> Vec<DVec3> {
-        let is_left = |point: &DVec3| {
-            let is_before = |cut: &Cut| cut.normal.dot(*point - cut.point) > 0.0;
-            match self.is_notch {
-                true => !self.cuts.iter().all(is_before),
-                false => !self.cuts.iter().any(is_before),
+        let largest = |largest: f64, point: &DVec3| largest.max(point.abs().max_element());
+        let margin = 1e-9 * self.mesh.points.iter().fold(0.0, largest);
+        let behind = |cuts: &[Cut]| {
+            let mut left = outline::left_by(&self.mesh, cuts);
+            let corners = outline::corners_of(cuts, margin).into_iter();
+            left.extend(corners.filter(|corner| self.is_inside(*corner)));
+            match outline::is_flat(&left, cuts, margin) {
+                true => vec![],
+                false => left,
             }
         };
-        let left: Vec<DVec3> = self.mesh.points.iter().copied().filter(is_left).collect();
-        if left.is_empty() {
-            self.mesh.points.clone()
-        } else {
-            left
+        match self.is_notch {
+            // A notch leaves what lies behind one of its planes, whichever.
+            true => self.cuts.chunks(1).flat_map(behind).collect(),
+            false if self.cuts.is_empty() => self.mesh.points.clone(),
+            false => behind(&self.cuts),
         }
+    }
+
+    /// Whether a point lies inside the closed mesh.
+    fn is_inside(&self, point: DVec3) -> bool {
+        let upwards = Ray::new(point, DVec3::Z);
+        let meeting = self.hierarchy().first(&upwards, 0.0, f64::INFINITY);
+        meeting.is_some_and(|meeting| meeting.leaves)
     }
 
     /// The part of a ray that lies on the given side of all cuts: behind them, or before.
@@ -197,7 +212,7 @@ impl Thing {
         };
         for (index, cut) in self.cuts.iter().enumerate() {
             let sign = if before { -1.0 } else { 1.0 };
-            let height = sign * cut.normal.dot(ray.point(0.0) - cut.point);
+            let height = sign * cut.height(ray.point(0.0));
             let rise = sign * cut.normal.dot(ray.direction());
             if rise == 0.0 {
                 if height > 0.0 {
@@ -284,9 +299,7 @@ impl Thing {
         let triangle = &self.mesh.triangles[meeting.triangle as usize];
         let [v, w] = meeting.weights;
         let weights = [1.0 - v - w, v, w];
-        let corners = triangle
-            .points
-            .map(|index| self.mesh.points[index as usize]);
+        let corners = outline::corners(&self.mesh, triangle);
         let normals = triangle
             .normals
             .map(|index| self.mesh.normals[index as usize]);
