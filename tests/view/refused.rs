@@ -165,6 +165,11 @@ fn only_closed_meshes_are_cut() {
         "the mesh is not closed, so it has no inside that cuts could show: 3 of its edges lie open, \
          one at (4.500, 4.500, 0.000)"
     );
+    // A seam that is off by rounding is none.
+    assert_eq!(
+        tetrahedron("v 9 -5e-15 0\nf 1 3 2\nf 1 5 4\nf 1 4 3\nf 2 3 4\n"),
+        ""
+    );
     // One triangle is turned.
     assert_eq!(
         tetrahedron("f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 4 3\n"),

@@ -19,13 +19,18 @@ pub(crate) enum Open {
     InsideOut,
 }
 
-/// Whether a mesh bounds a space; points at the same place count as one.
+/// Points of one cell of a grid, as a part of the largest coordinate, count as one: seams of files are off by rounding.
+const NEAR: f64 = 1e-6;
+
+/// Whether a mesh bounds a space; points at almost the same place count as one.
 ///
 /// # Errors
 /// [`Open`].
 pub(crate) fn check_closed(mesh: &Mesh) -> Result<(), Open> {
-    let bits = |point: &DVec3| (*point + 0.0).to_array().map(f64::to_bits);
-    let numbers = numbered(mesh.points.iter().map(bits), &mut HashMap::new());
+    let largest = |largest: f64, point: &DVec3| largest.max(point.abs().max_element());
+    let step = NEAR * mesh.points.iter().fold(f64::MIN_POSITIVE, largest);
+    let cell = |point: &DVec3| (*point / step).to_array().map(|part| part.round() as i64);
+    let numbers = numbered(mesh.points.iter().map(cell), &mut HashMap::new());
     let mut edges: Vec<u64> = mesh.triangles.iter().flat_map(edges(&numbers)).collect();
     edges.sort_unstable();
     let is_uneven = |of_edge: &&[u64]| {
