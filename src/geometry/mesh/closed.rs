@@ -50,15 +50,18 @@ pub(crate) fn check_closed(mesh: &Mesh) -> Result<(), Open> {
     }
 }
 
-/// The edges of a triangle: both numbers, the lower one first, and in the last bit whether they are turned.
-fn edges(numbers: &[u32]) -> impl Fn(&Triangle) -> [u64; 3] {
+/// The edges of a triangle: both numbers, the lower one first, and in the last bit whether they are turned. Those
+/// whose ends count as one are none.
+fn edges(numbers: &[u32]) -> impl Fn(&Triangle) -> Vec<u64> {
     |triangle| {
         let [a, b, c] = triangle.points.map(|index| numbers[index as usize]);
-        [(a, b), (b, c), (c, a)].map(|(from, to)| {
+        let edge = |(from, to): (u32, u32)| {
             let (low, high) = (u64::from(from.min(to)), u64::from(from.max(to)));
             // A mesh has fewer than 2^31 points.
             low << 32 | high << 1 | u64::from(from > to)
-        })
+        };
+        let ends = [(a, b), (b, c), (c, a)].into_iter();
+        ends.filter(|(from, to)| from != to).map(edge).collect()
     }
 }
 
