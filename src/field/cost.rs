@@ -26,8 +26,8 @@ impl Program {
         samples.saturating_mul(self.slots * size_of::<f32>())
     }
 
-    /// The most operations that this program and those for single pixels may have together: each step
-    /// that may be supersampled brings a program that is at most as long as this one.
+    /// A bound of the operations that this program and those for single pixels have together: each step that may be
+    /// supersampled counts for a program as long as this one, though several may share theirs.
     pub fn most_operations(&self) -> usize {
         let may_be_supersampled =
             |step: &&Step| matches!(step, Step::Kernel(step) if step.within.is_some());
