@@ -4,7 +4,8 @@ use super::memory::Structure;
 use crate::key::{Key, KeyHasher};
 use crate::node::Kind;
 use crate::value::{
-    Climate, ColourPattern, Material, Mesh, Patches, RingSeries, Skeleton, Type, Value,
+    Climate, ColourPattern, Material, Mesh, Partition, Patches, Region, RingSeries, Skeleton, Type,
+    Value,
 };
 use serde::Deserialize;
 use std::sync::Arc;
@@ -19,7 +20,9 @@ pub(super) fn key(value: &Value) -> Key {
         | Value::Climate(_)
         | Value::RingSeries(_)
         | Value::Mesh(_)
-        | Value::Patches(_) => {
+        | Value::Patches(_)
+        | Value::Region(_)
+        | Value::Partition(_) => {
             key.text(value.type_name()).bytes(&structure_bytes(value));
         }
         Value::Material(material) => add_material(&mut key, material),
@@ -69,6 +72,8 @@ fn structure_bytes(value: &Value) -> Vec<u8> {
         Value::RingSeries(series) => postcard::to_stdvec(&**series),
         Value::Mesh(mesh) => postcard::to_stdvec(&**mesh),
         Value::Patches(patches) => postcard::to_stdvec(&**patches),
+        Value::Region(region) => postcard::to_stdvec(&**region),
+        Value::Partition(partition) => postcard::to_stdvec(&**partition),
         _ => Ok(vec![]),
     };
     bytes.expect("plain data always has bytes")
@@ -118,6 +123,8 @@ fn decode_value(value_type: Type, bytes: &[u8]) -> Option<Value> {
         Type::RingSeries => sound(bytes, RingSeries::is_sound).map(Value::RingSeries),
         Type::Mesh => sound(bytes, Mesh::is_sound).map(Value::Mesh),
         Type::Patches => sound(bytes, Patches::is_sound).map(Value::Patches),
+        Type::Region => sound(bytes, Region::is_sound).map(Value::Region),
+        Type::Partition => sound(bytes, Partition::is_sound).map(Value::Partition),
         _ => None,
     }
 }

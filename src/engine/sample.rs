@@ -3,15 +3,11 @@
 use super::event::Listener;
 use super::{Engine, RunError};
 use crate::diagnostics::{Code, Diagnostic, nearest};
-use crate::field::{Field, Program, Samples, Scratch};
+use crate::field::{Field, at_points};
 use crate::graph::{Graph, Link};
 use crate::node::{Output, field_of};
 use crate::value::{Type, Value};
 use petgraph::graph::NodeIndex;
-use rayon::prelude::*;
-
-/// Points evaluated in one go.
-const BLOCK: usize = 4096;
 
 /// A field with the names of its components.
 #[derive(Clone, Debug)]
@@ -60,30 +56,9 @@ impl Engine {
     /// The values of fields at `points`: for each field its columns, for each column its values.
     pub fn sample(&self, fields: &[SampledField], points: &[[f64; 3]]) -> Vec<Vec<Vec<f32>>> {
         let plain: Vec<Field> = fields.iter().map(|sampled| sampled.field.clone()).collect();
-        let program = Program::compile(&plain);
         let mut context = self.context();
         context.cache = None;
-        let sample = |scratch: &mut Scratch, points: &[[f64; 3]]| {
-            program.run(&Samples::Points(points), scratch, &context);
-            let taken = |column: &[f32]| column[..points.len()].to_vec();
-            let columns = |output| program.columns(scratch, output).into_iter().map(taken);
-            (0..plain.len())
-                .map(|output| columns(output).collect())
-                .collect()
-        };
-        let blocks: Vec<Vec<Vec<Vec<f32>>>> = self.threads.install(|| {
-            let blocks = points.par_chunks(BLOCK);
-            blocks.map_init(Scratch::default, sample).collect()
-        });
-        let column = |output: usize, column: usize| {
-            let parts = blocks.iter().map(|block| block[output][column].as_slice());
-            parts.collect::<Vec<_>>().concat()
-        };
-        let columns = |(output, field): (usize, &Field)| {
-            let columns = 0..field.width();
-            columns.map(|index| column(output, index)).collect()
-        };
-        plain.iter().enumerate().map(columns).collect()
+        self.threads.install(|| at_points(&plain, points, &context))
     }
 }
 

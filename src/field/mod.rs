@@ -8,6 +8,7 @@ mod charts;
 mod compile;
 mod cost;
 mod kernel;
+mod points;
 mod run;
 mod samples;
 mod slots;
@@ -18,6 +19,7 @@ mod within;
 
 pub use compile::Program;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};
+pub(crate) use points::at_points;
 pub use run::{ColumnCache, Columns, RunContext, Scratch, Work};
 pub(crate) use samples::remainder;
 pub use samples::{PixelGrid, Samples, Target};

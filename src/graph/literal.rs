@@ -93,6 +93,8 @@ impl<'c> Reader<'c> {
             | Type::RingSeries
             | Type::Mesh
             | Type::Patches
+            | Type::Region
+            | Type::Partition
             | Type::Material
             | Type::Maps => self.mismatch(tree, slot),
         }

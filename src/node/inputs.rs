@@ -3,12 +3,12 @@
 use super::Kind;
 use super::ledger::{Budget, Ledger};
 use crate::cancel::Cancel;
-use crate::field::{Field, Kernel};
+use crate::field::{Field, Kernel, RunContext, at_points};
 use crate::value::{
-    Climate, ColourPattern, Domain, FileContents, Material, Mesh, Patches, RingSeries, Skeleton,
-    Value,
+    Climate, ColourPattern, Domain, FileContents, Material, Mesh, Partition, Patches, Region,
+    RingSeries, Skeleton, Value,
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// The inputs of one node, checked against its kind: absent optional ones are missing, defaults filled in.
@@ -85,6 +85,24 @@ impl Build<'_> {
     /// The columns that `kernel` computes from `inputs`.
     pub fn kernel(&self, kernel: impl Kernel + 'static, inputs: Vec<Field>) -> Field {
         Field::kernel(self.node, Arc::new(kernel), inputs)
+    }
+
+    /// The values of a field of the plane at points in mm, column by column and unfiltered: for structures that are made
+    /// along a field.
+    ///
+    /// # Errors
+    /// If the run was cancelled, as of [`Build::go_on`].
+    pub fn sample(&self, field: &Field, points: &[DVec2]) -> Result<Vec<Vec<f32>>, Failure> {
+        let context = RunContext {
+            level: fearless_simd::Level::new(),
+            cache: None,
+            filtering: false,
+            cancel: self.cancel,
+        };
+        let points: Vec<[f64; 3]> = points.iter().map(|at| [at.x, at.y, 0.0]).collect();
+        let mut values = at_points(std::slice::from_ref(field), &points, &context);
+        self.go_on()?;
+        Ok(values.swap_remove(0))
     }
 
     /// To be asked in loops that may take longer than some milliseconds.
@@ -198,6 +216,10 @@ impl<'a> Inputs<'a> {
         mesh, Value::Mesh(mesh) => mesh, &'a Arc<Mesh>;
         /// Patches.
         patches, Value::Patches(patches) => patches, &'a Arc<Patches>;
+        /// A region.
+        region, Value::Region(region) => region, &'a Arc<Region>;
+        /// A partition.
+        partition, Value::Partition(partition) => partition, &'a Arc<Partition>;
         /// A material.
         material, Value::Material(material) => material, &'a Arc<Material>;
     }

@@ -5,6 +5,7 @@ pub mod cut;
 pub mod field;
 pub mod noise;
 pub mod output;
+pub mod partition;
 mod picture;
 mod random;
 pub mod rings;

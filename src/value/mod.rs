@@ -4,7 +4,9 @@ mod climate;
 mod colour_pattern;
 mod material;
 mod mesh;
+mod partition;
 mod patches;
+mod region;
 mod ring_series;
 mod skeleton;
 mod table;
@@ -14,8 +16,10 @@ pub use climate::{Climate, Month};
 pub use colour_pattern::{AfterEnd, ColourPattern};
 pub use material::{FileType, MapFormat, Maps, Material, SampleType, Surface};
 pub use mesh::{Mesh, Triangle};
+pub use partition::Partition;
 pub(crate) use patches::HIGHEST_DEGREE;
 pub use patches::{Patch, Patches};
+pub use region::{Polygon, Region};
 pub use ring_series::RingSeries;
 pub use skeleton::{Branch, Skeleton, Tangents, Thickness};
 pub use table::Table;
@@ -88,6 +92,10 @@ pub enum Value {
     Mesh(Arc<Mesh>),
     /// Curved surfaces in space.
     Patches(Arc<Patches>),
+    /// Polygons with holes.
+    Region(Arc<Region>),
+    /// A plane divided into cells.
+    Partition(Arc<Partition>),
     /// A bundle of fields.
     Material(Arc<Material>),
     /// Maps to be written.
@@ -146,6 +154,8 @@ impl Value {
             | Value::RingSeries(_)
             | Value::Mesh(_)
             | Value::Patches(_)
+            | Value::Region(_)
+            | Value::Partition(_)
             | Value::Material(_)
             | Value::Maps(_)
             | Value::Table(_) => key,
@@ -201,6 +211,8 @@ impl Value {
             Value::RingSeries(_) => "ring series",
             Value::Mesh(_) => "mesh",
             Value::Patches(_) => "patches",
+            Value::Region(_) => "region",
+            Value::Partition(_) => "partition",
             Value::Material(_) => "material",
             Value::Maps(_) => "maps",
             Value::Table(_) => "table",

@@ -94,6 +94,10 @@ pub enum Type {
     Mesh,
     /// Curved surfaces in space, each over a square.
     Patches,
+    /// Polygons with holes, in mm.
+    Region,
+    /// A plane divided into cells.
+    Partition,
     /// A bundle of fields.
     Material,
     /// Files to be written, maps or a table: what an output of a recipe is.
@@ -116,6 +120,8 @@ impl Type {
                 | Type::RingSeries
                 | Type::Mesh
                 | Type::Patches
+                | Type::Region
+                | Type::Partition
         )
     }
 }
@@ -148,6 +154,8 @@ impl fmt::Display for Type {
             Type::RingSeries => write!(formatter, "ring series"),
             Type::Mesh => write!(formatter, "mesh"),
             Type::Patches => write!(formatter, "patches"),
+            Type::Region => write!(formatter, "region"),
+            Type::Partition => write!(formatter, "partition"),
             Type::Material => write!(formatter, "material"),
             Type::Maps => write!(formatter, "maps"),
         }

@@ -65,6 +65,8 @@ pub(super) fn read(
         "ring_series" => Type::RingSeries,
         "mesh" => Type::Mesh,
         "patches" => Type::Patches,
+        "region" => Type::Region,
+        "partition" => Type::Partition,
         _ => Type::ColourPattern,
     })
 }

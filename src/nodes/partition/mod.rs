@@ -1,0 +1,3 @@
+//! Planes divided into cells.
+
+mod ground;
