@@ -7,4 +7,5 @@ pub(crate) mod mesh;
 pub(crate) mod nurbs;
 pub(crate) mod patch_grid;
 pub mod spline;
+pub(crate) mod subdivision;
 mod tangents;
