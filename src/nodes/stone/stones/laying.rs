@@ -21,7 +21,7 @@ pub(super) struct Laid {
     pub(super) ids: Vec<u32>,
     /// A random number from 0 to 1.
     pub(super) shares: Vec<f64>,
-    /// How far the top leans, in radians.
+    /// How far the top leans, in degrees.
     pub(super) tilts: Vec<f64>,
 }
 
@@ -60,7 +60,7 @@ impl Manner {
             corner_radius: inputs.number("corner_radius"),
             crown: inputs.number("crown"),
             swell: inputs.number("swell"),
-            tilt: inputs.number("tilt"),
+            tilt: inputs.number("tilt").to_radians(),
         }
     }
 }
@@ -301,7 +301,7 @@ impl Laying {
 
     fn tilt_of_last(&self) -> f64 {
         let slope = self.stones.last().map_or(0.0, |stone| stone.slope.length());
-        libm::atan(f64::from(slope))
+        libm::atan(f64::from(slope)).to_degrees()
     }
 
     fn finish(self, period: Option<DVec2>) -> Ground {
