@@ -10,4 +10,5 @@ pub(crate) mod nurbs;
 pub(crate) mod patch_grid;
 pub(crate) mod polygon;
 pub mod spline;
+pub(crate) mod subdivision;
 mod tangents;

@@ -11,6 +11,7 @@ mod picture;
 mod random;
 pub mod rings;
 pub mod shape;
+pub mod stone;
 pub mod surface;
 pub mod view;
 pub mod wood;
@@ -61,6 +62,8 @@ pub static KINDS: &[&Kind] = &[
     &rings::growth_model::KIND,
     &shape::block::KIND,
     &shape::log::KIND,
+    &shape::subdivide::KIND,
+    &stone::stones::KIND,
     &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
