@@ -1,10 +1,14 @@
 //! Packs stones.
+pub(crate) mod cells;
+pub(crate) mod collapse;
 pub(crate) mod direction;
+pub(crate) mod dual;
 pub(crate) mod force;
 pub(crate) mod guide;
 pub(crate) mod lattice;
 pub(crate) mod neighbours;
 pub(crate) mod position;
+pub(crate) mod relax;
 pub(crate) mod settle;
 pub(crate) mod start;
 pub(crate) mod walls;
@@ -30,3 +34,4 @@ impl Stone {
         DVec2::new(self.frame.dot(offset), self.frame.perp_dot(offset))
     }
 }
+
