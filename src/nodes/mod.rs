@@ -67,6 +67,7 @@ pub static KINDS: &[&Kind] = &[
     &partition::cell_fields::KIND,
     &partition::cell_value::KIND,
     &partition::per_cell::KIND,
+    &surface::inlay::KIND,
 ];
 
 /// The kind called `name`.

@@ -2,6 +2,6 @@
 
 pub mod cell_fields;
 pub mod cell_value;
-mod found;
+pub(in crate::nodes) mod found;
 mod ground;
 pub mod per_cell;
