@@ -97,6 +97,24 @@ impl BoxTree {
         from + middle
     }
 
+    /// Shows the items of all leaves whose box touches a box; some of them may not touch it themselves.
+    pub(crate) fn visit(&self, [low, high]: [DVec2; 2], show: &mut dyn FnMut(u32)) {
+        let mut waiting = vec![0];
+        while let Some(index) = waiting.pop() {
+            let Some(node) = self.nodes.get(index) else {
+                continue;
+            };
+            let touches = node.low.cmple(high).all() && node.high.cmpge(low).all();
+            match node.second {
+                _ if !touches => {}
+                Some(second) => waiting.extend([second, index + 1]),
+                None => self.items[node.items[0]..node.items[1]]
+                    .iter()
+                    .for_each(|item| show(*item)),
+            }
+        }
+    }
+
     /// The nearest item, the first of equally near ones; `distance_squared` gives how far each is from the point.
     pub(crate) fn nearest(
         &self,

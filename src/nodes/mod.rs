@@ -1,5 +1,6 @@
 //! The kinds of nodes, in families: one file each, and one line each in the table below.
 
+mod average;
 mod cells;
 pub mod cut;
 pub mod field;
@@ -63,6 +64,9 @@ pub static KINDS: &[&Kind] = &[
     &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
+    &partition::cell_fields::KIND,
+    &partition::cell_value::KIND,
+    &partition::per_cell::KIND,
 ];
 
 /// The kind called `name`.

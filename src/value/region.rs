@@ -1,5 +1,6 @@
 //! Regions: parts of the plane, as polygons with holes.
 
+use crate::geometry::polygon::doubled_area;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -48,15 +49,6 @@ impl Region {
             && self.rings().flatten().all(is_within)
             && self.polygons.iter().all(runs_well)
     }
-}
-
-/// Twice the area that a ring encloses; below 0 if it runs clockwise.
-fn doubled_area(ring: &[DVec2]) -> f64 {
-    let Some(first) = ring.first() else {
-        return 0.0;
-    };
-    let pairs = ring.windows(2).map(|pair| (pair[0], pair[1]));
-    pairs.map(|(a, b)| (a - *first).perp_dot(b - *first)).sum()
 }
 
 #[cfg(test)]

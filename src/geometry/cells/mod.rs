@@ -1,0 +1,181 @@
+//! Finds the cell of a partition at a point, and how far its border is.
+
+mod edge;
+mod grid;
+
+use self::edge::Edge;
+use self::grid::Grid;
+use super::box_tree::BoxTree;
+use crate::value::Partition;
+use glam::DVec2;
+use std::convert::Infallible;
+use std::sync::Arc;
+
+/// The cells of a partition, made ready to be found.
+///
+/// Which side of an edge a point is on is decided alike for both of its cells, so a point belongs to exactly one cell of
+/// those that tile, wherever the search began.
+#[derive(Debug)]
+pub(crate) struct CellIndex {
+    partition: Arc<Partition>,
+    copies: Vec<Copy>,
+    grid: Grid,
+    tree: BoxTree,
+}
+
+/// A cell, or one of its repetitions.
+#[derive(Clone, Copy, Debug)]
+struct Copy {
+    cell: u32,
+    /// How far it is moved from where the partition has it.
+    shift: DVec2,
+    low: DVec2,
+    high: DVec2,
+}
+
+/// A cell at a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spot {
+    /// The cell; where there is none, the nearest one.
+    pub(crate) cell: u32,
+    /// From the cell's centre to the point, in mm.
+    pub(crate) offset: DVec2,
+    /// Distance to the cell's border in mm, below 0 outside.
+    pub(crate) border: f64,
+    /// The corner before the nearest edge.
+    pub(crate) edge: u32,
+    /// How far the cell is moved from where the partition has it.
+    shift: DVec2,
+}
+
+impl CellIndex {
+    /// Makes the cells of a partition ready.
+    pub(crate) fn new(partition: &Arc<Partition>) -> CellIndex {
+        let copies = copies(partition);
+        let boxes: Vec<[DVec2; 2]> = copies.iter().map(|it| [it.low, it.high]).collect();
+        let Ok(tree) = BoxTree::new(&boxes, &mut || Ok::<(), Infallible>(()));
+        CellIndex {
+            partition: Arc::clone(partition),
+            grid: Grid::new(&boxes, partition.len()),
+            copies,
+            tree,
+        }
+    }
+
+    /// What is at a point; `last` is what was at a point nearby, if that is known.
+    pub(crate) fn find(&self, point: DVec2, last: Option<&Spot>) -> Spot {
+        let point = match self.partition.period {
+            None => point,
+            Some(period) => point - (point / period).floor() * period,
+        };
+        if let Some(last) = last {
+            let again = self.spot(last.cell, last.shift, point);
+            if again.border >= 0.0 {
+                return again;
+            }
+            // Across the nearest edge is where the point is most often.
+            let beyond = self.partition.neighbours[again.edge as usize];
+            if beyond != Partition::NONE && self.partition.period.is_none() {
+                let next = self.spot(beyond, DVec2::ZERO, point);
+                if next.border >= 0.0 {
+                    return next;
+                }
+            }
+        }
+        let inside = self.grid.at(point).iter().find_map(|index| {
+            let copy = &self.copies[*index as usize];
+            let is_near = point.cmpge(copy.low).all() && point.cmple(copy.high).all();
+            let spot = is_near.then(|| self.spot(copy.cell, copy.shift, point))?;
+            (spot.border >= 0.0).then_some(spot)
+        });
+        inside.unwrap_or_else(|| self.nearest(point))
+    }
+
+    /// The cell that is nearest to a point outside all.
+    fn nearest(&self, point: DVec2) -> Spot {
+        let spot = |index: u32| {
+            let copy = &self.copies[index as usize];
+            self.spot(copy.cell, copy.shift, point)
+        };
+        let distance_squared = |index: u32| {
+            let border = spot(index).border;
+            border * border
+        };
+        let nearest = self.tree.nearest(point, distance_squared);
+        spot(nearest.expect("a partition has cells"))
+    }
+
+    /// A cell as seen from a point.
+    fn spot(&self, cell: u32, shift: DVec2, point: DVec2) -> Spot {
+        let at = point - shift;
+        let (mut is_inside, mut nearest, mut edge) = (false, f64::INFINITY, 0);
+        for ring in self.partition.rings_of(cell as usize) {
+            let corners = &self.partition.corners[ring.clone()];
+            let mut from = corners[corners.len() - 1];
+            let mut index = ring.end - 1;
+            for (offset, to) in corners.iter().enumerate() {
+                let side = Edge {
+                    from,
+                    to: *to,
+                    bulge: self.partition.bulge(index),
+                };
+                is_inside ^= side.turns_over(at);
+                let distance = side.distance_squared(at);
+                if distance < nearest {
+                    (nearest, edge) = (distance, index as u32);
+                }
+                (from, index) = (*to, ring.start + offset);
+            }
+        }
+        let distance = nearest.sqrt();
+        Spot {
+            cell,
+            offset: at - self.partition.centres[cell as usize],
+            border: if is_inside { distance } else { -distance },
+            edge,
+            shift,
+        }
+    }
+}
+
+/// All cells, and of a periodic partition those of their repetitions that are in the first period or near it.
+fn copies(partition: &Partition) -> Vec<Copy> {
+    let boxes: Vec<[DVec2; 2]> = (0..partition.len())
+        .map(|cell| partition.box_of(cell))
+        .collect();
+    let shifts = match partition.period {
+        None => vec![DVec2::ZERO],
+        Some(period) => {
+            let steps = [0.0, -1.0, 1.0];
+            let steps = steps.map(|y| steps.map(|x| DVec2::new(x, y) * period));
+            steps.concat()
+        }
+    };
+    let size = boxes.iter().map(|[low, high]| *high - *low);
+    let margin = size.fold(DVec2::ZERO, DVec2::max);
+    let is_near = |low: DVec2, high: DVec2| {
+        let Some(period) = partition.period else {
+            return true;
+        };
+        high.cmpge(-margin).all() && low.cmple(period + margin).all()
+    };
+    let mut copies = vec![];
+    for shift in shifts {
+        for (cell, [low, high]) in boxes.iter().enumerate() {
+            let (low, high) = (*low + shift, *high + shift);
+            if is_near(low, high) {
+                let cell = cell as u32;
+                copies.push(Copy {
+                    cell,
+                    shift,
+                    low,
+                    high,
+                });
+            }
+        }
+    }
+    copies
+}
+
+#[cfg(test)]
+mod tests;
