@@ -100,6 +100,11 @@ impl CellIndex {
         inside.unwrap_or_else(|| self.nearest(point))
     }
 
+    /// The id of the cell at a point.
+    pub(crate) fn id_at(&self, point: DVec2) -> u32 {
+        self.partition.ids[self.find(point, None).cell as usize]
+    }
+
     /// The cell that is nearest to a point outside all.
     fn nearest(&self, point: DVec2) -> Spot {
         let spot = |index: u32| {
@@ -117,9 +122,9 @@ impl CellIndex {
     /// A cell as seen from a point.
     fn spot(&self, cell: u32, shift: DVec2, point: DVec2) -> Spot {
         let at = point - shift;
-        let (is_inside, nearest, edge) = match self.large.get(&cell) {
-            Some(tree) => tree.meet(at),
-            None => meet(&self.partition, cell, at),
+        let (is_inside, nearest, edge) = match has_many(&self.partition, cell) {
+            true => self.large[&cell].meet(at),
+            false => meet(&self.partition, cell, at),
         };
         let distance = nearest.sqrt();
         Spot {
@@ -164,16 +169,16 @@ fn for_edges(partition: &Partition, cell: u32, mut each: impl FnMut(Edge, u32)) 
     }
 }
 
+/// Whether a cell has so many edges that they are kept in a tree.
+fn has_many(partition: &Partition, cell: u32) -> bool {
+    let rings = [0, 1].map(|end| partition.cells[cell as usize + end] as usize);
+    let [first, last] = rings.map(|ring| partition.rings[ring] as usize);
+    last - first > MANY
+}
+
 /// The edges of cells that have many, by the cells.
 fn large(partition: &Partition) -> HashMap<u32, EdgeTree> {
-    let has_many = |cell: &u32| {
-        partition
-            .rings_of(*cell as usize)
-            .map(|ring| ring.len())
-            .sum::<usize>()
-            > MANY
-    };
-    let cells = (0..partition.len() as u32).filter(has_many);
+    let cells = (0..partition.len() as u32).filter(|cell| has_many(partition, *cell));
     let tree = |cell: u32| {
         let mut edges = vec![];
         for_edges(partition, cell, |edge, corner| edges.push((edge, corner)));
