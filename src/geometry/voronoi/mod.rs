@@ -55,8 +55,8 @@ pub(crate) fn voronoi<E>(
     let sites = scale.sites(seeds);
     let dual = triangulation::Dual::new(&sites, None, go_on)?;
     let vertices = dual.vertices(seeds.len());
-    let partition = cells::Maker::new(&dual, &scale).partition(&vertices);
     go_on()?;
+    let partition = cells::Maker::new(&dual, &scale).partition(&vertices);
     Ok(partition.map(|partition| {
         let without = seeds.len() - partition.len();
         Cells {
