@@ -5,6 +5,7 @@
 //! slots by liveness, so a program needs as many buffers as are alive at once.
 
 use super::charts::Charts;
+use super::guards::{self, Guard};
 use super::places::{ColumnsOf, Places};
 use super::within::{Member, Sharing, Within};
 use super::{Field, Kernel, Operation, Sampling};
@@ -17,6 +18,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Program {
     pub(super) steps: Vec<Step>,
+    /// For each step which choice it is needed for, if it is not needed always.
+    pub(super) guards: Vec<Option<Guard>>,
     /// Programs that give fields inside single pixels.
     pub(super) within: Vec<Within>,
     pub(super) slots: usize,
@@ -144,13 +147,15 @@ impl Compiler {
             })
             .collect();
         let margin = super::cost::assign_margins(&mut self.steps, self.columns);
+        let outputs = outputs?;
         let program = Program {
+            guards: guards::guards(&self.steps, &outputs, self.columns),
             steps: self.steps,
             within: self.sharing.programs(),
             slots: self.columns,
             constants: self.constants,
             remainder: self.remainder,
-            outputs: outputs?,
+            outputs,
             margin,
             key: key.finish(),
         };
@@ -203,8 +208,13 @@ impl Compiler {
         let wanted = match &field.0.operation {
             Operation::Constant(_) | Operation::Position | Operation::Remainder => vec![],
             Operation::Part { of, .. } => vec![(of.clone(), place)],
-            Operation::Kernel { inputs, .. } => {
-                inputs.iter().map(|input| (input.clone(), place)).collect()
+            Operation::Kernel { kernel, inputs, .. } => {
+                let choice = kernel.alternatives().map(|it| inputs[it.choice].clone());
+                match choice.filter(|it| !self.columns_of.contains_key(&(it.key(), place))) {
+                    // The choice comes before what is chosen, which then may be left out.
+                    Some(choice) => vec![(choice, place)],
+                    None => inputs.iter().map(|input| (input.clone(), place)).collect(),
+                }
             }
             Operation::At { field, opening } => {
                 match self.places.open(place, opening, &self.columns_of) {

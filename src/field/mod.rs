@@ -8,6 +8,7 @@ mod charts;
 mod compile;
 mod cost;
 mod given;
+mod guards;
 mod kernel;
 mod places;
 mod points;
@@ -21,6 +22,7 @@ mod within;
 
 pub use compile::Program;
 pub(crate) use given::names_read;
+pub use guards::Alternatives;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};
 pub(crate) use points::at_points;
 pub use run::{ColumnCache, Columns, RunContext, Scratch, Work};

@@ -9,13 +9,13 @@ mod weld;
 
 pub(crate) use clip::clip;
 pub(crate) use dissolve::{dissolve, merge_slivers};
+pub(crate) use weld::{Corner, weld};
 
 use crate::geometry::polygon::{Measure, measure};
 use crate::value::Partition;
 use draft::Draft;
 use glam::DVec2;
 use rayon::prelude::*;
-use weld::Corner;
 
 /// What is to become a cell.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 
 pub mod cell_fields;
 pub mod cell_value;
-mod found;
+pub(in crate::nodes) mod found;
 mod ground;
 pub mod per_cell;
+pub mod region_cells;

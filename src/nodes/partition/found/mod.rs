@@ -2,7 +2,7 @@
 
 mod quantity;
 
-pub(super) use self::quantity::{Quantity, share};
+pub(in crate::nodes) use self::quantity::{Quantity, share};
 
 use crate::field::{Block, Field, Kernel};
 use crate::geometry::cells::CellIndex;
@@ -14,7 +14,7 @@ use std::sync::{Arc, OnceLock};
 
 /// A partition as fields of the plane.
 #[derive(Clone, Debug)]
-pub(super) struct Found {
+pub(in crate::nodes) struct Found {
     partition: Arc<Partition>,
     key: Key,
     columns: Field,
@@ -25,7 +25,7 @@ const FRACTIONS: u32 = 1 << 22;
 
 impl Found {
     /// The cells of a partition.
-    pub(super) fn new(build: &Build<'_>, partition: &Arc<Partition>) -> Found {
+    pub(in crate::nodes) fn new(build: &Build<'_>, partition: &Arc<Partition>) -> Found {
         let key = partition.key();
         let find = Find {
             partition: Arc::clone(partition),
@@ -40,32 +40,32 @@ impl Found {
     }
 
     /// The index of the cell at a point, or of the nearest one.
-    pub(super) fn index(&self) -> Field {
+    pub(in crate::nodes) fn index(&self) -> Field {
         self.columns.part(0, 1)
     }
 
     /// The distance to the cell's border in mm, below 0 outside.
-    pub(super) fn border(&self) -> Field {
+    pub(in crate::nodes) fn border(&self) -> Field {
         self.columns.part(1, 1)
     }
 
     /// Where the point is in the cell, in mm along the cell's own two axes from its centre.
-    pub(super) fn place(&self) -> Field {
+    pub(in crate::nodes) fn place(&self) -> Field {
         self.columns.part(2, 3)
     }
 
     /// The id of the cell beyond the nearest edge, -1 if there is none.
-    pub(super) fn beyond(&self) -> Field {
+    pub(in crate::nodes) fn beyond(&self) -> Field {
         self.columns.part(5, 1)
     }
 
     /// A fraction that is the same within a cell: parts of one chart.
-    pub(super) fn chart(&self, build: &Build<'_>) -> Field {
+    pub(in crate::nodes) fn chart(&self, build: &Build<'_>) -> Field {
         build.kernel(Chart, vec![self.index()])
     }
 
     /// What is known of the cell.
-    pub(super) fn quantity(&self, build: &Build<'_>, quantity: Quantity) -> Field {
+    pub(in crate::nodes) fn quantity(&self, build: &Build<'_>, quantity: Quantity) -> Field {
         let kernel = quantity.of(&self.partition, self.key);
         build.kernel(kernel, vec![self.index()])
     }

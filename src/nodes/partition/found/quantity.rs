@@ -8,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 
 /// Something that each cell has one of.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::nodes::partition) enum Quantity {
+pub(in crate::nodes) enum Quantity {
     /// Its id.
     Id,
     /// A number from 0 to 1, drawn from its id and a seed.
@@ -29,7 +29,7 @@ pub(in crate::nodes::partition) enum Quantity {
 
 /// Columns of a quantity.
 #[derive(Debug)]
-pub(in crate::nodes::partition) struct LookUp {
+pub(in crate::nodes) struct LookUp {
     quantity: Quantity,
     partition: Arc<Partition>,
     key: Key,
@@ -125,7 +125,7 @@ impl Kernel for LookUp {
 
 /// A number from 0 to less than 1 in steps of 2^-24, drawn from a seed and an id (the mixing of splitmix64, Steele, Lea &
 /// Flood 2014).
-pub(in crate::nodes::partition) fn share(seed: u64, id: u32) -> f64 {
+pub(in crate::nodes) fn share(seed: u64, id: u32) -> f64 {
     let mixed = (seed ^ u64::from(id))
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)
         .wrapping_add(seed);

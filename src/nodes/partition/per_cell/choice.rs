@@ -1,7 +1,7 @@
 //! Which of several materials a cell has.
 
 use super::KIND;
-use crate::field::{Block, Kernel, Sampling};
+use crate::field::{Alternatives, Block, Kernel, Sampling};
 use crate::key::KeyHasher;
 
 /// Rounds a number to one of the materials. The second column, the cell's index, is where it may change.
@@ -96,6 +96,14 @@ impl Kernel for Pick {
             column: 0,
             absolute: 0.5,
         }
+    }
+
+    fn alternatives(&self) -> Option<Alternatives> {
+        Some(Alternatives {
+            choice: 1,
+            first: 2,
+            width: self.width,
+        })
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
