@@ -71,6 +71,7 @@ pub static KINDS: &[&Kind] = &[
     &partition::cell_value::KIND,
     &partition::per_cell::KIND,
     &partition::region_cells::KIND,
+    &partition::voronoi_split::KIND,
     &surface::inlay::KIND,
 ];
 

@@ -66,7 +66,10 @@ impl<'a> Maker<'a> {
     }
 
     /// The cells of the seeds with these vertices; `None` if there are none.
-    pub(super) fn partition(&mut self, vertices: &[Option<FixedVertexHandle>]) -> Option<Partition> {
+    pub(super) fn partition(
+        &mut self,
+        vertices: &[Option<FixedVertexHandle>],
+    ) -> Option<Partition> {
         let mut parts = self.parts();
         if parts.iter().any(|part| part.has_equal) {
             drop(parts);
@@ -102,7 +105,8 @@ impl<'a> Maker<'a> {
                 (area, centre) = measure(at, &draft.cell);
                 if area > SAME * extent(&draft.cell) {
                     self.into_first_period(&mut centre, &mut draft);
-                    part.corners.extend(draft.cell.iter().map(|corner| corner.0));
+                    part.corners
+                        .extend(draft.cell.iter().map(|corner| corner.0));
                     part.across.extend(draft.cell.iter().map(|corner| corner.1));
                 }
             }
@@ -149,7 +153,11 @@ impl<'a> Maker<'a> {
 
     fn at(&self, corner: u32) -> DVec2 {
         let at = self.corners.at(corner, [0; 2]);
-        if self.scale.repeats { at } else { self.ground.snapped(at) }
+        if self.scale.repeats {
+            at
+        } else {
+            self.ground.snapped(at)
+        }
     }
 
     /// Moves a cell by whole periods so that its centre is within the first.
@@ -184,7 +192,9 @@ fn gather(parts: &[Part], places: &[Option<[usize; 2]>], scale: &Scale) -> Optio
     let number = |seed: u32| match seed {
         FAR => Partition::NONE,
         seed if is_whole => seed,
-        seed => kept.binary_search(&seed).map_or(Partition::NONE, |cell| cell as u32),
+        seed => kept
+            .binary_search(&seed)
+            .map_or(Partition::NONE, |cell| cell as u32),
     };
     let total = parts.iter().map(|part| part.corners.len()).sum();
     let mut partition = Partition {
@@ -206,10 +216,14 @@ fn gather(parts: &[Part], places: &[Option<[usize; 2]>], scale: &Scale) -> Optio
         let corners = part.corners[range.clone()].iter();
         partition.corners.extend(corners.map(|at| scale.place(*at)));
         let across = part.across[range].iter();
-        partition.neighbours.extend(across.map(|seed| number(*seed)));
+        partition
+            .neighbours
+            .extend(across.map(|seed| number(*seed)));
         partition.rings.push(partition.corners.len() as u32);
         partition.centres.push(scale.place(part.centres[cell]));
-        partition.areas.push(part.areas[cell] * scale.unit * scale.unit);
+        partition
+            .areas
+            .push(part.areas[cell] * scale.unit * scale.unit);
     }
     Some(partition)
 }

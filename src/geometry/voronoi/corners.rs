@@ -109,7 +109,10 @@ impl Corners {
         let pairs_at = |vertex: usize| {
             let vertex = dual.triangles.vertex(FixedVertexHandle::from_index(vertex));
             let later = move |edge: &Edge<'_>| edge.to().index() > vertex.index();
-            vertex.out_edges().filter(later).filter_map(|edge| self.pair(edge))
+            vertex
+                .out_edges()
+                .filter(later)
+                .filter_map(|edge| self.pair(edge))
         };
         let vertices = (0..dual.triangles.num_vertices()).into_par_iter();
         vertices.flat_map_iter(pairs_at).collect()
@@ -190,7 +193,13 @@ impl Place {
         });
         let first = sites[0];
         let farthest = |measure: &dyn Fn(&Site) -> f64| {
-            let later = |best: Site, site: &Site| if measure(site) > measure(&best) { *site } else { best };
+            let later = |best: Site, site: &Site| {
+                if measure(site) > measure(&best) {
+                    *site
+                } else {
+                    best
+                }
+            };
             sites.iter().fold(first, later)
         };
         let second = farthest(&|site| site.at.distance_squared(first.at));

@@ -9,7 +9,10 @@ mod clip;
 mod corners;
 mod order;
 mod periodic;
+mod power;
 mod triangulation;
+
+pub(crate) use power::power_cells;
 
 use crate::value::Partition;
 use glam::DVec2;

@@ -43,7 +43,7 @@ pub(super) fn cells<E>(
 }
 
 /// All seeds, moved into the first period.
-fn first_period(seeds: &[DVec2], scale: &Scale, period: DVec2) -> Vec<Site> {
+pub(super) fn first_period(seeds: &[DVec2], scale: &Scale, period: DVec2) -> Vec<Site> {
     let site = |(seed, position): (usize, &DVec2)| {
         let at = (*position - scale.low) / scale.unit;
         let at = at - (at / period).floor() * period;
