@@ -13,3 +13,4 @@ pub(crate) mod polygon;
 pub mod spline;
 pub(crate) mod subdivision;
 mod tangents;
+pub(crate) mod voronoi;
