@@ -11,6 +11,7 @@ mod picture;
 mod random;
 pub mod rings;
 pub mod shape;
+pub mod stone;
 pub mod surface;
 pub mod view;
 pub mod wood;
@@ -61,12 +62,15 @@ pub static KINDS: &[&Kind] = &[
     &rings::growth_model::KIND,
     &shape::block::KIND,
     &shape::log::KIND,
+    &shape::subdivide::KIND,
+    &stone::stones::KIND,
     &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
     &partition::cell_fields::KIND,
     &partition::cell_value::KIND,
     &partition::per_cell::KIND,
+    &partition::region_cells::KIND,
     &surface::inlay::KIND,
 ];
 

@@ -5,3 +5,4 @@ pub mod cell_value;
 pub(in crate::nodes) mod found;
 mod ground;
 pub mod per_cell;
+pub mod region_cells;
