@@ -182,6 +182,9 @@ impl Bed<'_> {
 
 /// Where the sites of a stone of size 1 are, from its middle.
 fn pattern(stone: DVec2, corners: u32) -> Vec<DVec2> {
+    if corners == 5 {
+        return vec![DVec2::ZERO];
+    }
     if corners != 4 {
         let turn = std::f64::consts::TAU / f64::from(corners);
         let site = |index: u32| {

@@ -85,10 +85,14 @@ impl Guide {
         }
     }
 
-    /// The direction at a point that is nearest to `frame`.
-    pub(crate) fn near(&self, point: DVec2, frame: DVec2) -> DVec2 {
-        let wished = self.at(point).frame;
-        nearest_turn(wished, frame, self.symmetry)
+    /// The smallest size factor anywhere.
+    pub(crate) fn least(&self) -> f64 {
+        self.samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The largest size factor anywhere.
+    pub(crate) fn largest(&self) -> f64 {
+        self.samples.iter().map(|sample| sample.1).fold(0.0, f64::max)
     }
 }
 

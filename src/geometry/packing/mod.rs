@@ -1,17 +1,30 @@
-//! Packs stones.
-pub(crate) mod cells;
-pub(crate) mod collapse;
+//! Packing: stones that fill a region, follow a direction and leave no gaps.
+//!
+//! Two ways lead there. Particles that push and pull each other settle (Miyata, Itoh & Shimada); what they leave at faults is
+//! left, as in the paper. A position field (Jakob and others 2015) gives every place its nearest point of a lattice that
+//! follows the direction, and stones stand where many places agree; then they are evened out, and mended.
+
+mod cells;
+mod collapse;
 pub(crate) mod direction;
-pub(crate) mod dual;
-pub(crate) mod force;
-pub(crate) mod guide;
-pub(crate) mod lattice;
-pub(crate) mod neighbours;
-pub(crate) mod position;
-pub(crate) mod relax;
-pub(crate) mod settle;
-pub(crate) mod start;
-pub(crate) mod walls;
+mod dual;
+mod force;
+mod guide;
+mod lattice;
+mod mend;
+mod neighbours;
+mod plan;
+mod position;
+mod relax;
+mod settle;
+mod start;
+pub(crate) mod statistics;
+mod walls;
+
+pub(crate) use force::Law;
+pub(crate) use guide::Guide;
+pub(crate) use plan::{Method, Plan, pack};
+pub(crate) use start::Start;
 
 use glam::DVec2;
 
@@ -19,19 +32,18 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stone {
     /// Its middle.
-    pub(crate) point: DVec2,
+    point: DVec2,
     /// The direction of its length, of length 1.
-    pub(crate) frame: DVec2,
+    frame: DVec2,
     /// Its size as a factor.
-    pub(crate) scale: f64,
+    scale: f64,
     /// Whether it stays where it is.
-    pub(crate) is_fixed: bool,
+    is_fixed: bool,
 }
 
 impl Stone {
     /// An offset in the stone's own frame.
-    pub(crate) fn within(&self, offset: DVec2) -> DVec2 {
+    fn within(&self, offset: DVec2) -> DVec2 {
         DVec2::new(self.frame.dot(offset), self.frame.perp_dot(offset))
     }
 }
-

@@ -49,8 +49,10 @@ pub(crate) struct Field<'a> {
     pub(crate) period: Option<DVec2>,
     /// Smallest size factor anywhere.
     pub(crate) least: f64,
-    /// Whether the lattice looks the same after a quarter turn.
-    pub(crate) is_square: bool,
+    /// How far from the border the first row lies, in mm for a size of 1.
+    pub(crate) first: f64,
+    /// In how many parts of a turn the lattice looks the same.
+    pub(crate) symmetry: u32,
 }
 
 impl Field<'_> {
@@ -123,7 +125,7 @@ impl Field<'_> {
 
     /// Holds a sample near the border to rows along it.
     fn hold(&self, walls: &Walls, sample: &mut Sample) {
-        let half = 0.5 * sample.scale * self.lattice.step.y;
+        let half = sample.scale * self.first;
         let mut near: Vec<_> = walls
             .feet(sample.point)
             .filter(|foot| foot.distance < 2.2 * half && foot.height(sample.point) > 0.98 * foot.distance)
@@ -154,9 +156,15 @@ impl Field<'_> {
 
     /// Distance between rows across a direction.
     fn step_along(&self, sample: &Sample, normal: DVec2) -> f64 {
-        let along = sample.frame.dot(normal).abs() > std::f64::consts::FRAC_1_SQRT_2;
-        let step = self.lattice.step;
-        sample.scale * if along { step.x } else { step.y }
+        let is_along = sample.frame.dot(normal).abs() > std::f64::consts::FRAC_1_SQRT_2;
+        let Lattice { step, shift } = self.lattice;
+        // Staggered rows end in whole and half stones by turns; hexagons have rows in all three directions.
+        let step = match (self.symmetry, is_along) {
+            (6, _) | (_, false) => step.y,
+            (_, true) if shift == 0.0 => step.x,
+            (_, true) => 0.5 * step.x,
+        };
+        sample.scale * step
     }
 
     /// The lattice through a sample's origin: its point nearest to `point`.

@@ -69,6 +69,9 @@ impl Relaxation<'_> {
         for round in 0..ROUNDS {
             go_on(round as f64 / ROUNDS as f64)?;
             if round % 8 == 0 {
+                if let Some(period) = self.period {
+                    stones.iter_mut().for_each(|stone| stone.point = stone.point.rem_euclid(period));
+                }
                 neighbours = self.neighbours(stones);
             }
             let steps = self.steps(stones, &neighbours);

@@ -53,6 +53,9 @@ impl Dynamics<'_> {
                 self.turn(stones);
             }
             if moved > 0.5 * SKIN * smallest * self.stone.min_element() {
+                if let Some(period) = self.period {
+                    stones.iter_mut().for_each(|stone| stone.point = stone.point.rem_euclid(period));
+                }
                 neighbours = self.neighbours(stones);
                 moved = 0.0;
             }

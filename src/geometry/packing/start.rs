@@ -28,7 +28,6 @@ pub(crate) struct Ground<'a> {
     pub(crate) stone: DVec2,
     /// Smallest and largest random size.
     pub(crate) spread: [f64; 2],
-    pub(crate) period: Option<DVec2>,
     /// Smallest size factor anywhere.
     pub(crate) least: f64,
 }
