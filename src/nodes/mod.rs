@@ -8,6 +8,7 @@ pub mod output;
 pub mod partition;
 mod picture;
 mod random;
+pub mod region;
 pub mod rings;
 pub mod shape;
 pub mod surface;
@@ -63,6 +64,13 @@ pub static KINDS: &[&Kind] = &[
     &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
+    &region::region::KIND,
+    &region::region_shape::KIND,
+    &region::region_from_file::KIND,
+    &region::region_from_mesh::KIND,
+    &region::combine_regions::KIND,
+    &region::grow_region::KIND,
+    &region::region_field::KIND,
 ];
 
 /// The kind called `name`.
