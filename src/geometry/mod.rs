@@ -3,6 +3,7 @@
 pub(crate) mod assemble;
 mod box_tree;
 pub(crate) mod hierarchy;
+pub(crate) mod inset;
 pub(crate) mod level_surface;
 pub(crate) mod mesh;
 pub(crate) mod nurbs;

@@ -2,8 +2,23 @@
 
 use glam::DVec2;
 
-/// A ring whose corners are rounded: its corners, and how much the edge behind each is bent.
-pub(crate) type Bent = (Vec<DVec2>, Vec<f64>);
+/// A ring whose edges may be arcs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Bent {
+    pub(crate) corners: Vec<DVec2>,
+    /// How much the edge behind each corner is bent: the tangent of a quarter of its angle.
+    pub(crate) bulges: Vec<f64>,
+    /// The edge of the ring that was rounded on which each edge lies; an arc belongs to the edge behind it.
+    pub(crate) edges: Vec<usize>,
+}
+
+impl Bent {
+    fn push(&mut self, corner: DVec2, bulge: f64, edge: usize) {
+        self.corners.push(corner);
+        self.bulges.push(bulge);
+        self.edges.push(edge);
+    }
+}
 
 /// Corners that turn by less than this are not rounded, as a sine.
 const STRAIGHT: f64 = 1e-9;
@@ -12,25 +27,23 @@ const STRAIGHT: f64 = 1e-9;
 /// more than half of an edge.
 pub(crate) fn round_corners(ring: &[DVec2], radius: f64) -> Bent {
     let count = ring.len();
-    let (mut corners, mut bulges) = (vec![], vec![]);
+    let mut bent = Bent::default();
     for (index, corner) in ring.iter().enumerate() {
         let to_before = ring[(index + count - 1) % count] - *corner;
         let to_next = ring[(index + 1) % count] - *corner;
         let (before, next) = (to_before.length(), to_next.length());
         let (cosine, sine) = turn(-to_before / before, to_next / next);
         if radius <= 0.0 || sine.abs() < STRAIGHT && cosine > 0.0 {
-            corners.push(*corner);
-            bulges.push(0.0);
+            bent.push(*corner, 0.0, index);
             continue;
         }
         let half = sine / (1.0 + cosine).max(1e-12);
         let off = (radius * half.abs()).min(0.5 * before.min(next));
-        corners.push(*corner + to_before * (off / before));
-        bulges.push(half / (1.0 + (1.0 + half * half).sqrt()));
-        corners.push(*corner + to_next * (off / next));
-        bulges.push(0.0);
+        let bulge = half / (1.0 + (1.0 + half * half).sqrt());
+        bent.push(*corner + to_before * (off / before), bulge, index);
+        bent.push(*corner + to_next * (off / next), 0.0, index);
     }
-    without_points(corners, bulges)
+    without_points(&bent)
 }
 
 /// Cosine and sine of the angle between two directions.
@@ -39,27 +52,28 @@ fn turn(from: DVec2, to: DVec2) -> (f64, f64) {
 }
 
 /// Arcs that take half an edge each leave nothing between them.
-fn without_points(corners: Vec<DVec2>, bulges: Vec<f64>) -> Bent {
-    let count = corners.len();
+fn without_points(bent: &Bent) -> Bent {
+    let (corners, count) = (&bent.corners, bent.corners.len());
     let extent = corners.iter().map(|corner| corner.abs().max_element());
     let near = 1e-14 * extent.fold(0.0, f64::max);
-    let is_edge = |index: &usize| {
-        bulges[*index] != 0.0 || corners[*index].distance(corners[(index + 1) % count]) > near
-    };
-    let kept = || (0..count).filter(is_edge);
-    (
-        kept().map(|at| corners[at]).collect(),
-        kept().map(|at| bulges[at]).collect(),
-    )
+    let mut kept = Bent::default();
+    for index in 0..count {
+        let bulge = bent.bulges[index];
+        if bulge != 0.0 || corners[index].distance(corners[(index + 1) % count]) > near {
+            kept.push(corners[index], bulge, bent.edges[index]);
+        }
+    }
+    kept
 }
 
 /// A ring of straight edges that is nowhere farther from the bent one than `tolerance`.
-pub(crate) fn flatten((corners, bulges): &Bent, tolerance: f64) -> Vec<DVec2> {
+pub(crate) fn flatten(bent: &Bent, tolerance: f64) -> Vec<DVec2> {
+    let corners = &bent.corners;
     let mut flat = vec![];
     for (index, from) in corners.iter().enumerate() {
         let to = corners[(index + 1) % corners.len()];
         flat.push(*from);
-        let bulge = bulges.get(index).copied().unwrap_or_default();
+        let bulge = bent.bulges[index];
         if bulge != 0.0 {
             add_arc(*from, to, bulge, tolerance, &mut flat);
         }
@@ -100,18 +114,18 @@ mod tests {
 
     #[test]
     fn a_square_loses_what_four_arcs_leave_out() {
-        let (corners, bulges) = round_corners(&square(), 1.0);
-        assert_eq!(corners.len(), 8);
-        assert!((measure(&corners, &bulges).area - (12.0 + PI)).abs() < 1e-12);
+        let area = |bent: &Bent| measure(&bent.corners, &bent.bulges).area;
+        let rounded = round_corners(&square(), 1.0);
+        assert_eq!(rounded.edges, [0, 0, 1, 1, 2, 2, 3, 3]);
+        assert!((area(&rounded) - (12.0 + PI)).abs() < 1e-12);
         let disk = round_corners(&square(), 9.0);
-        assert_eq!(disk.0.len(), 4);
-        assert!((measure(&disk.0, &disk.1).area - 4.0 * PI).abs() < 1e-12);
+        assert_eq!(disk.edges, [0, 1, 2, 3]);
+        assert!((area(&disk) - 4.0 * PI).abs() < 1e-12);
     }
 
     #[test]
     fn flat_arcs_stay_within_the_tolerance() {
-        let disk = round_corners(&square(), 2.0);
-        let flat = flatten(&disk, 1e-3);
+        let flat = flatten(&round_corners(&square(), 2.0), 1e-3);
         let centre = DVec2::splat(2.0);
         assert!(
             flat.iter()
@@ -127,9 +141,10 @@ mod tests {
     fn a_corner_that_turns_right_is_rounded_inwards() {
         let notched =
             [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (3.0, 1.0)].map(|(x, y)| DVec2::new(x, y));
-        let (_, bulges) = round_corners(&notched, 0.1);
-        let bulges: [f64; 8] = bulges.try_into().unwrap();
-        let signs = bulges.map(|bulge| bulge.partial_cmp(&0.0).unwrap() as i32);
-        assert_eq!(signs, [1, 0, 1, 0, 1, 0, -1, 0]);
+        let bulges = round_corners(&notched, 0.1).bulges;
+        let signs = bulges
+            .iter()
+            .map(|bulge| bulge.partial_cmp(&0.0).unwrap() as i32);
+        assert_eq!(signs.collect::<Vec<i32>>(), [1, 0, 1, 0, 1, 0, -1, 0]);
     }
 }
