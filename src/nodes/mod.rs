@@ -9,6 +9,7 @@ pub mod output;
 pub mod partition;
 mod picture;
 mod random;
+pub mod region;
 pub mod rings;
 pub mod shape;
 pub mod stone;
@@ -73,6 +74,13 @@ pub static KINDS: &[&Kind] = &[
     &partition::region_cells::KIND,
     &partition::voronoi_split::KIND,
     &surface::inlay::KIND,
+    &region::region::KIND,
+    &region::region_shape::KIND,
+    &region::region_from_file::KIND,
+    &region::region_from_mesh::KIND,
+    &region::combine_regions::KIND,
+    &region::grow_region::KIND,
+    &region::region_field::KIND,
 ];
 
 /// The kind called `name`.
