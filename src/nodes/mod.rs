@@ -73,6 +73,7 @@ pub static KINDS: &[&Kind] = &[
     &partition::per_cell::KIND,
     &partition::region_cells::KIND,
     &partition::voronoi_split::KIND,
+    &partition::split_cells::KIND,
     &surface::inlay::KIND,
     &region::region::KIND,
     &region::region_shape::KIND,

@@ -7,4 +7,5 @@ pub(in crate::nodes) mod found;
 mod ground;
 pub mod per_cell;
 pub mod region_cells;
+pub mod split_cells;
 pub mod voronoi_split;
