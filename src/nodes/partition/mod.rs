@@ -6,3 +6,4 @@ pub(in crate::nodes) mod found;
 mod ground;
 pub mod per_cell;
 pub mod region_cells;
+pub mod square_packing;
