@@ -93,6 +93,10 @@ impl Listen {
                 self.bar.set_message(progress(event));
                 self.bar.set_position((fraction * STEPS as f64) as u64);
             }
+            Event::StructureProgress { node, fraction } => {
+                self.bar.set_prefix(node.clone());
+                self.bar.set_message(format!("{:.0} %", 100.0 * fraction));
+            }
             Event::MapStale { output, path, .. } => self.warn(&format!(
                 "{} is from an earlier run: `{output}` no longer writes it",
                 path.display()

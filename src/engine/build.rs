@@ -3,6 +3,7 @@
 use super::event::{Event, Listener};
 use super::memory::{Memory, Structure};
 use super::plan::Plan;
+use super::progress::Quiet;
 use super::store::Store;
 use super::verify::Verification;
 use super::{Cancel, RunError, arithmetic, content, reuse};
@@ -191,7 +192,16 @@ impl Builder<'_> {
                 seed: node.origin.seed,
                 cancel: Some(self.cancel),
             };
+            let quiet = Quiet::default();
+            let tell = |fraction: f64| {
+                if quiet.is_over() {
+                    let node = node.name.to_string();
+                    self.listener
+                        .hear(Event::StructureProgress { node, fraction });
+                }
+            };
             let inputs = Inputs::within(node.kind, &inputs, Arc::clone(&self.budget));
+            let inputs = inputs.telling(&tell);
             let values = call(|| (node.kind.build)(&inputs, &build))?;
             let keys = values.iter().map(content::key).collect();
             let (warnings, taken) = inputs.close();

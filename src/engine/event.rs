@@ -33,6 +33,13 @@ pub enum Event {
         /// Where it was.
         from: From,
     },
+    /// How far a structure is that takes its time; at most ten a second.
+    StructureProgress {
+        /// The node.
+        node: String,
+        /// How much of it is done, from 0 to 1.
+        fraction: f64,
+    },
     /// How many tiles of an output a node's kernels computed, and how many the cache gave.
     FieldTiles {
         /// The output.

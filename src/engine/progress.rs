@@ -8,6 +8,27 @@ use std::time::{Duration, Instant};
 /// Time between two events of progress, at least.
 const QUIET: Duration = Duration::from_millis(100);
 
+/// Says when there has been nothing to hear for a while, from any thread.
+pub(super) struct Quiet(Mutex<Instant>);
+
+impl Default for Quiet {
+    fn default() -> Quiet {
+        Quiet(Mutex::new(Instant::now()))
+    }
+}
+
+impl Quiet {
+    /// Whether the last time it was, or the start, is long enough ago.
+    pub(super) fn is_over(&self) -> bool {
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_over = last.elapsed() >= QUIET;
+        if is_over {
+            *last = Instant::now();
+        }
+        is_over
+    }
+}
+
 /// Counts tiles and maps of a run, from any thread.
 pub(super) struct Meter<'a> {
     listener: &'a dyn Listener,

@@ -9,6 +9,7 @@ pub(crate) mod inset;
 pub(crate) mod level_surface;
 pub(crate) mod mesh;
 pub(crate) mod nurbs;
+pub(crate) mod packing;
 pub(crate) mod patch_grid;
 pub(crate) mod polygon;
 pub mod spline;

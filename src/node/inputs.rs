@@ -21,6 +21,16 @@ pub struct Inputs<'a> {
     values: &'a [Option<Value>],
     ledger: Ledger,
     budget: Arc<Budget>,
+    progress: Option<Progress<'a>>,
+}
+
+/// Who hears how far a node is.
+struct Progress<'a>(&'a (dyn Fn(f64) + Sync));
+
+impl std::fmt::Debug for Progress<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Progress")
+    }
 }
 
 /// Why a node could not be built, in terms of the recipe.
@@ -149,6 +159,23 @@ impl<'a> Inputs<'a> {
             values,
             ledger: Ledger::default(),
             budget,
+            progress: None,
+        }
+    }
+
+    /// Lets `hear` know how far the node is.
+    pub(crate) fn telling(self, hear: &'a (dyn Fn(f64) + Sync)) -> Inputs<'a> {
+        Inputs {
+            progress: Some(Progress(hear)),
+            ..self
+        }
+    }
+
+    /// Tells how much of the node is done, from 0 to 1: for structures that take longer than some tenths of a second. It may be
+    /// called as often as is handy.
+    pub fn progress(&self, fraction: f64) {
+        if let Some(Progress(hear)) = &self.progress {
+            hear(fraction);
         }
     }
 

@@ -68,6 +68,8 @@ pub static KINDS: &[&Kind] = &[
     &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
+    &field::direction_field::KIND,
+    &partition::square_packing::KIND,
     &partition::cell_fields::KIND,
     &partition::cell_value::KIND,
     &partition::per_cell::KIND,

@@ -25,6 +25,13 @@ fn all_events() -> Vec<(Event, Value)> {
             json!({ "event": "structure_built", "node": "tree", "milliseconds": 1.5 }),
         ),
         (
+            Event::StructureProgress {
+                node: text("stones"),
+                fraction: 0.5,
+            },
+            json!({ "event": "structure_progress", "node": "stones", "fraction": 0.5 }),
+        ),
+        (
             Event::StructureReused {
                 node: text("tree"),
                 from: ReusedFrom::Memory,
@@ -133,6 +140,7 @@ fn is_listed(event: &Event) -> bool {
     match event {
         Event::StructureBuilt { .. }
         | Event::StructureReused { .. }
+        | Event::StructureProgress { .. }
         | Event::FieldTiles { .. }
         | Event::Progress { .. }
         | Event::MapWritten { .. }

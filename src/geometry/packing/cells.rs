@@ -47,7 +47,11 @@ pub(crate) fn cells(bed: &Bed<'_>, stones: &[Stone]) -> Partition {
             if gaps.is_empty() {
                 partition
             } else {
-                let highest = pieces.iter().map(|piece| piece.id).max().unwrap_or_default();
+                let highest = pieces
+                    .iter()
+                    .map(|piece| piece.id)
+                    .max()
+                    .unwrap_or_default();
                 let numbered = gaps.into_iter().zip(highest + 1..);
                 pieces.extend(numbered.map(|(piece, id)| Piece { id, ..piece }));
                 assemble(pieces, None, tolerance)
@@ -55,7 +59,11 @@ pub(crate) fn cells(bed: &Bed<'_>, stones: &[Stone]) -> Partition {
         }
         Some(_) => assemble(pieces, bed.period, tolerance),
     };
-    let mean = stones.iter().map(|stone| stone.scale * stone.scale).sum::<f64>() / stones.len() as f64;
+    let mean = stones
+        .iter()
+        .map(|stone| stone.scale * stone.scale)
+        .sum::<f64>()
+        / stones.len() as f64;
     let least = SLIVER * mean * bed.stone.x * bed.stone.y;
     let (partition, _) = merge_slivers(&partition, least);
     let limits = Collapse {
@@ -80,7 +88,11 @@ impl Bed<'_> {
         let (outer, inner): (Vec<usize>, Vec<usize>) = (0..partition.len()).partition(is_outer);
         let rings: Vec<&[DVec2]> = outer
             .iter()
-            .flat_map(|cell| partition.rings_of(*cell).map(|ring| &partition.corners[ring]))
+            .flat_map(|cell| {
+                partition
+                    .rings_of(*cell)
+                    .map(|ring| &partition.corners[ring])
+            })
             .collect();
         let region: Vec<&[DVec2]> = self.region.rings().collect();
         let [low, extent] = self.bounds;
@@ -89,11 +101,16 @@ impl Bed<'_> {
         // What the inner cells cover is left as well.
         let is_gap = |polygon: &Polygon| {
             let edges = Edges::new(polygon.rings());
-            !inner.iter().any(|cell| edges.enclose(partition.centres[*cell]))
+            !inner
+                .iter()
+                .any(|cell| edges.enclose(partition.centres[*cell]))
         };
         let gaps = left.into_iter().filter(is_gap);
         let piece = |polygon: Polygon| Piece {
-            rings: std::iter::once(polygon.outline).chain(polygon.holes).map(Ring::straight).collect(),
+            rings: std::iter::once(polygon.outline)
+                .chain(polygon.holes)
+                .map(Ring::straight)
+                .collect(),
             id: 0,
             frame: DVec2::X,
             centre: None,
@@ -106,8 +123,13 @@ impl Bed<'_> {
         let all = self.with_images(stones);
         let pattern = pattern(self.stone, self.corners);
         let of_stone = |(owner, stone): (usize, &Stone)| {
-            let places = pattern.iter().map(|at| stone.point + stone.frame.rotate(*at * stone.scale));
-            let sites = places.map(|point| Site { point, owner: owner as u32 });
+            let places = pattern
+                .iter()
+                .map(|at| stone.point + stone.frame.rotate(*at * stone.scale));
+            let sites = places.map(|point| Site {
+                point,
+                owner: owner as u32,
+            });
             let mut sites: Vec<Site> = sites.collect();
             let outside = self.outside(stone, &sites);
             sites.extend(outside);
@@ -116,8 +138,17 @@ impl Bed<'_> {
         let mut sites: Vec<Site> = all.par_iter().enumerate().flat_map_iter(of_stone).collect();
         sites.extend(self.guards());
         let mosaic = mosaic(sites, all.len());
-        let ring = |ring: &Vec<u32>| ring.iter().map(|corner| mosaic.points[*corner as usize]).collect();
-        let rings = mosaic.rings.iter().take(stones.len()).zip(stones).enumerate();
+        let ring = |ring: &Vec<u32>| {
+            ring.iter()
+                .map(|corner| mosaic.points[*corner as usize])
+                .collect()
+        };
+        let rings = mosaic
+            .rings
+            .iter()
+            .take(stones.len())
+            .zip(stones)
+            .enumerate();
         let pieces = rings.filter(|(_, (corners, _))| corners.len() >= 3);
         let piece = |(id, (corners, stone)): (usize, (&Vec<u32>, &Stone))| Piece {
             rings: vec![Ring::straight(ring(corners))],
@@ -131,16 +162,22 @@ impl Bed<'_> {
     /// The stones, and behind them their images around the period.
     fn with_images(&self, stones: &[Stone]) -> Vec<Stone> {
         let mut all = stones.to_vec();
-        let Some(period) = self.period else { return all };
+        let Some(period) = self.period else {
+            return all;
+        };
         let largest = stones.iter().map(|stone| stone.scale).fold(0.0, f64::max);
         let margin = 3.0 * largest * self.stone.max_element();
         let most = (margin / period).ceil().as_ivec2();
         for y in -most.y..=most.y {
             for x in (-most.x..=most.x).filter(|x| (*x, y) != (0, 0)) {
                 let by = period * DVec2::new(f64::from(x), f64::from(y));
-                let images = stones.iter().map(|stone| Stone { point: stone.point + by, ..*stone });
+                let images = stones.iter().map(|stone| Stone {
+                    point: stone.point + by,
+                    ..*stone
+                });
                 all.extend(images.filter(|image| {
-                    image.point.cmpgt(-DVec2::splat(margin)).all() && image.point.cmplt(period + margin).all()
+                    image.point.cmpgt(-DVec2::splat(margin)).all()
+                        && image.point.cmplt(period + margin).all()
                 }));
             }
         }
@@ -149,7 +186,9 @@ impl Bed<'_> {
 
     /// Images of a stone's sites beyond the borders nearby, so that its cell ends a little outside.
     fn outside(&self, stone: &Stone, sites: &[Site]) -> Vec<Site> {
-        let Some(walls) = self.walls else { return vec![] };
+        let Some(walls) = self.walls else {
+            return vec![];
+        };
         let size = stone.scale * self.stone.max_element();
         let beyond = BEYOND * stone.scale * self.stone.min_element();
         let mut outside = vec![];
@@ -162,7 +201,10 @@ impl Bed<'_> {
                 let height = (site.point - foot.point).dot(foot.inward).max(0.0);
                 let point = site.point - 2.0 * (height + beyond) * foot.inward;
                 if !walls.contains(point) {
-                    outside.push(Site { point, owner: OUTSIDE });
+                    outside.push(Site {
+                        point,
+                        owner: OUTSIDE,
+                    });
                 }
             }
         }
@@ -174,9 +216,21 @@ impl Bed<'_> {
         let [low, extent] = self.bounds;
         let middle = low + 0.5 * extent;
         let far = 4.0 * (extent.max_element() + self.stone.max_element());
-        [(1.0, 0.1), (0.7, 0.72), (0.1, 1.0), (-0.7, 0.7), (-1.0, 0.1), (-0.72, -0.7), (-0.1, -1.0), (0.7, -0.71)]
-            .into_iter()
-            .map(move |at| Site { point: middle + far * DVec2::from(at), owner: OUTSIDE })
+        [
+            (1.0, 0.1),
+            (0.7, 0.72),
+            (0.1, 1.0),
+            (-0.7, 0.7),
+            (-1.0, 0.1),
+            (-0.72, -0.7),
+            (-0.1, -1.0),
+            (0.7, -0.71),
+        ]
+        .into_iter()
+        .map(move |at| Site {
+            point: middle + far * DVec2::from(at),
+            owner: OUTSIDE,
+        })
     }
 }
 
@@ -194,7 +248,9 @@ fn pattern(stone: DVec2, corners: u32) -> Vec<DVec2> {
         return (0..corners).map(site).collect();
     }
     let short = stone.min_element();
-    let count = (2.0 * stone / short).round().clamp(DVec2::splat(2.0), DVec2::splat(16.0));
+    let count = (2.0 * stone / short)
+        .round()
+        .clamp(DVec2::splat(2.0), DVec2::splat(16.0));
     let step = stone / count;
     let (columns, rows) = (count.x as usize, count.y as usize);
     let site = |index: usize| {

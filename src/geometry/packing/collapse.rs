@@ -52,7 +52,9 @@ pub(crate) fn collapse(partition: &Partition, limits: &Collapse) -> Partition {
         net.join(from, to, limits.short);
     }
     let pieces = net.rings.iter().enumerate().map(|(cell, rings)| {
-        let ring = |ring: &Vec<Corner>| Ring::straight(ring.iter().map(|corner| net.place(*corner)).collect());
+        let ring = |ring: &Vec<Corner>| {
+            Ring::straight(ring.iter().map(|corner| net.place(*corner)).collect())
+        };
         Piece {
             rings: rings.iter().map(ring).collect(),
             id: partition.ids[cell],
@@ -118,7 +120,11 @@ impl Net {
                 let to = ring[(index + 1) % ring.len()];
                 let length = self.place(*from).distance(self.place(to));
                 if length < short {
-                    let (a, b) = if from.point < to.point { (*from, to) } else { (to, *from) };
+                    let (a, b) = if from.point < to.point {
+                        (*from, to)
+                    } else {
+                        (to, *from)
+                    };
                     let base = a.period;
                     let moved = |corner: Corner| corner.moved(base.map(|periods| -periods));
                     edges.push((length, moved(a), moved(b)));
@@ -136,7 +142,9 @@ impl Net {
         }
         let (at, other) = (self.place(from), self.place(to));
         let length = at.distance(other);
-        let Some(merged) = self.middle(a, b, at, other) else { return };
+        let Some(merged) = self.middle(a, b, at, other) else {
+            return;
+        };
         let mut cells = [&self.cells[a][..], &self.cells[b][..]].concat();
         cells.sort_unstable();
         cells.dedup();
@@ -147,7 +155,10 @@ impl Net {
         let away = [0, 1].map(|axis| from.period[axis] - to.period[axis]);
         let renamed = |corner: &Corner| {
             if corner.point == to.point {
-                Corner { point: from.point, ..corner.moved(away) }
+                Corner {
+                    point: from.point,
+                    ..corner.moved(away)
+                }
             } else {
                 *corner
             }
@@ -158,7 +169,10 @@ impl Net {
             let rings = &self.rings[*cell as usize];
             let before = self.area(rings);
             let is_quad = rings[0].len() >= 4;
-            let mut rings: Vec<Vec<Corner>> = rings.iter().map(|ring| ring.iter().map(renamed).collect()).collect();
+            let mut rings: Vec<Vec<Corner>> = rings
+                .iter()
+                .map(|ring| ring.iter().map(renamed).collect())
+                .collect();
             rings.iter_mut().for_each(tidy);
             self.points[a] = merged;
             let is_sound = rings.iter().all(|ring| ring.len() >= 3)
@@ -184,7 +198,8 @@ impl Net {
 
     /// Where two points meet: in the middle, or where the border holds one of them. Two that are held stay apart.
     fn middle(&self, a: usize, b: usize, at: DVec2, other: DVec2) -> Option<DVec2> {
-        let is_along = |along: DVec2| (other - at).normalize_or(along).perp_dot(along).abs() < STRAIGHT;
+        let is_along =
+            |along: DVec2| (other - at).normalize_or(along).perp_dot(along).abs() < STRAIGHT;
         match (self.holds[a], self.holds[b]) {
             (Hold::Free, Hold::Free) => Some(0.5 * (at + other)),
             (_, Hold::Free) => Some(at),
@@ -200,7 +215,10 @@ impl Net {
     }
 
     fn area(&self, rings: &[Vec<Corner>]) -> f64 {
-        rings.iter().map(|ring| doubled_area(&self.drawn(ring))).sum()
+        rings
+            .iter()
+            .map(|ring| doubled_area(&self.drawn(ring)))
+            .sum()
     }
 
     /// Whether no two edges of a ring cross.

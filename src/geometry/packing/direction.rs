@@ -78,6 +78,26 @@ impl Directions {
         }
     }
 
+    /// After one turn in how many parts a direction means the same.
+    pub(crate) fn symmetry(&self) -> u32 {
+        self.symmetry
+    }
+
+    /// Number of segments.
+    pub(crate) fn len(&self) -> usize {
+        self.segments.len()
+    }
+
+    /// All that the directions depend on.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let of = |it: &Segment| {
+            [
+                it.from.x, it.from.y, it.along.x, it.along.y, it.weight, it.fade,
+            ]
+        };
+        std::iter::once(f64::from(self.symmetry)).chain(self.segments.iter().flat_map(of))
+    }
+
     /// Whether no segment says anything.
     pub(crate) fn is_empty(&self) -> bool {
         self.segments.is_empty()
@@ -121,6 +141,24 @@ impl Segment {
 }
 
 impl Turned {
+    /// The same with a weight of 1: a sum of length 1 where all agree.
+    pub(crate) fn of_one(self) -> Turned {
+        if self.weight > 0.0 {
+            let (sum, weight) = (self.sum / self.weight, 1.0);
+            Turned { sum, weight }
+        } else {
+            self
+        }
+    }
+
+    /// With a turned direction of some weight added.
+    pub(crate) fn with(self, turned: DVec2, weight: f64) -> Turned {
+        Turned {
+            sum: self.sum + weight * turned,
+            weight: self.weight + weight,
+        }
+    }
+
     /// How far the segments agree: 1 if all say the same, 0 if they cancel.
     pub(crate) fn coherence(&self) -> f64 {
         if self.weight > 0.0 {
@@ -230,7 +268,10 @@ mod tests {
         directions.add([DVec2::ZERO, DVec2::X], 1.0, 0.0);
         let before = directions.at(DVec2::new(0.5, 3.0));
         directions.add([DVec2::new(0.5, 4.0), DVec2::new(0.5, 5.0)], 9.0, 2.0);
-        assert_eq!(directions.at(DVec2::new(0.5, 1.9)), directions.at(DVec2::new(0.5, 1.9)));
+        assert_eq!(
+            directions.at(DVec2::new(0.5, 1.9)),
+            directions.at(DVec2::new(0.5, 1.9))
+        );
         let after = directions.at(DVec2::new(0.5, 3.0));
         assert!(before.direction(2).x > 0.999 && after.direction(2).y.abs() > 0.999);
         let beyond = directions.at(DVec2::new(0.5, 1.9));

@@ -45,7 +45,10 @@ pub(crate) fn mosaic(sites: Vec<Site>, count: usize) -> Mosaic {
     let Ok(triangles) = Triangles::bulk_load(sites) else {
         return Mosaic::default();
     };
-    let mut owners: Vec<u32> = triangles.vertices().map(|vertex| vertex.data().owner).collect();
+    let mut owners: Vec<u32> = triangles
+        .vertices()
+        .map(|vertex| vertex.data().owner)
+        .collect();
     hang_together(&triangles, &mut owners, count);
     // A stone with fewer than three corners gives its place to a neighbour, whose corners change with that.
     for _ in 0..8 {
@@ -56,7 +59,9 @@ pub(crate) fn mosaic(sites: Vec<Site>, count: usize) -> Mosaic {
         if too_few.is_empty() {
             return numbered(&triangles, rings);
         }
-        too_few.into_iter().for_each(|stone| give_away(&triangles, &mut owners, |owner| owner == stone));
+        too_few
+            .into_iter()
+            .for_each(|stone| give_away(&triangles, &mut owners, |owner| owner == stone));
     }
     numbered(&triangles, rings(&triangles, &owners, count))
 }
@@ -95,22 +100,33 @@ fn hang_together(triangles: &Triangles, owners: &mut [u32], count: usize) {
             for vertex in triangles.vertices() {
                 let index = vertex.fix().index();
                 if is_apart[index] {
-                    let near = vertex.out_edges().map(|edge| before[edge.to().fix().index()]);
-                    owners[index] = most(near.filter(|owner| *owner != before[index])).unwrap_or(before[index]);
+                    let near = vertex
+                        .out_edges()
+                        .map(|edge| before[edge.to().fix().index()]);
+                    owners[index] =
+                        most(near.filter(|owner| *owner != before[index])).unwrap_or(before[index]);
                 }
             }
-            is_apart.iter_mut().zip(owners.iter().zip(&before)).for_each(|(apart, (a, b))| *apart &= a == b);
+            is_apart
+                .iter_mut()
+                .zip(owners.iter().zip(&before))
+                .for_each(|(apart, (a, b))| *apart &= a == b);
         }
     }
 }
 
 /// Gives the sites of some owners to the neighbour that each has most edges with.
 fn give_away(triangles: &Triangles, owners: &mut [u32], is_given: impl Fn(u32) -> bool) {
-    let mine = triangles.vertices().filter(|vertex| is_given(owners[vertex.fix().index()]));
+    let mine = triangles
+        .vertices()
+        .filter(|vertex| is_given(owners[vertex.fix().index()]));
     let mine: Vec<usize> = mine.map(|vertex| vertex.fix().index()).collect();
     let near = mine.iter().flat_map(|index| {
         let vertex = triangles.vertex(spade::handles::FixedVertexHandle::from_index(*index));
-        vertex.out_edges().map(|edge| owners[edge.to().fix().index()]).collect::<Vec<u32>>()
+        vertex
+            .out_edges()
+            .map(|edge| owners[edge.to().fix().index()])
+            .collect::<Vec<u32>>()
     });
     let taker = most(near.filter(|owner| !is_given(*owner))).unwrap_or(OUTSIDE);
     mine.into_iter().for_each(|index| owners[index] = taker);
@@ -134,13 +150,20 @@ fn root(groups: &mut [u32], index: u32) -> u32 {
 }
 
 /// Of each owner the triangles in which it meets two others, in their order around it.
-fn rings(triangles: &Triangles, owners: &[u32], count: usize) -> Vec<Vec<FixedFaceHandle<InnerTag>>> {
+fn rings(
+    triangles: &Triangles,
+    owners: &[u32],
+    count: usize,
+) -> Vec<Vec<FixedFaceHandle<InnerTag>>> {
     let mut is_passed = vec![false; triangles.num_directed_edges()];
     let mut rings: Vec<(f64, Vec<FixedFaceHandle<InnerTag>>)> = vec![(0.0, vec![]); count];
     let owner = |vertex: usize| owners[vertex];
     for edge in triangles.directed_edges() {
         let stone = owner(edge.from().fix().index());
-        if stone == OUTSIDE || stone == owner(edge.to().fix().index()) || is_passed[edge.fix().index()] {
+        if stone == OUTSIDE
+            || stone == owner(edge.to().fix().index())
+            || is_passed[edge.fix().index()]
+        {
             continue;
         }
         let (mut ring, mut area) = (vec![], 0.0);
@@ -148,7 +171,9 @@ fn rings(triangles: &Triangles, owners: &[u32], count: usize) -> Vec<Vec<FixedFa
         let mut first = None;
         while !is_passed[at.fix().index()] {
             is_passed[at.fix().index()] = true;
-            let Some(face) = at.face().as_inner() else { break };
+            let Some(face) = at.face().as_inner() else {
+                break;
+            };
             let third = owner(at.next().to().fix().index());
             let centre = face.circumcenter();
             let centre = DVec2::new(centre.x, centre.y);
@@ -160,7 +185,11 @@ fn rings(triangles: &Triangles, owners: &[u32], count: usize) -> Vec<Vec<FixedFa
             if beyond == OUTSIDE || (third != stone && third != beyond) {
                 ring.push(face.fix());
             }
-            at = if third == stone { at.next().rev() } else { at.prev().rev() };
+            at = if third == stone {
+                at.next().rev()
+            } else {
+                at.prev().rev()
+            };
         }
         // Of several loops the largest is the outline.
         if area > rings[stone as usize].0 {
@@ -185,7 +214,9 @@ fn numbered(triangles: &Triangles, rings: Vec<Vec<FixedFaceHandle<InnerTag>>>) -
         let centre = triangles.face(*face).circumcenter();
         DVec2::new(centre.x, centre.y)
     };
-    let number = |ring: Vec<FixedFaceHandle<InnerTag>>| ring.iter().map(|face| numbers[face.index()]).collect();
+    let number = |ring: Vec<FixedFaceHandle<InnerTag>>| {
+        ring.iter().map(|face| numbers[face.index()]).collect()
+    };
     Mosaic {
         points: corners.par_iter().map(place).collect(),
         rings: rings.into_iter().map(number).collect(),

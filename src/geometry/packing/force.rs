@@ -193,7 +193,10 @@ mod tests {
             for side in 0..corners {
                 let turn = std::f64::consts::TAU * f64::from(side) / f64::from(corners);
                 let found = force.strength(DVec2::from_angle(turn));
-                assert!(found.abs() < 1e-14, "{corners} corners, side {side}: {found}");
+                assert!(
+                    found.abs() < 1e-14,
+                    "{corners} corners, side {side}: {found}"
+                );
                 let nearer = force.strength(0.95 * DVec2::from_angle(turn));
                 let farther = force.strength(1.05 * DVec2::from_angle(turn));
                 assert!(nearer > 0.01 && farther < -0.01);

@@ -36,7 +36,8 @@ impl Guide {
         let count = |length: f64| (length / step).ceil().clamp(1.0, MOST) as usize + 1;
         let (columns, rows) = (count(extent.x), count(extent.y));
         let steps = extent / DVec2::new((columns - 1) as f64, (rows - 1) as f64);
-        let row = |y: usize| (0..columns).map(move |x| low + DVec2::new(x as f64, y as f64) * steps);
+        let row =
+            |y: usize| (0..columns).map(move |x| low + DVec2::new(x as f64, y as f64) * steps);
         ((0..rows).flat_map(row).collect(), columns)
     }
 
@@ -69,7 +70,8 @@ impl Guide {
         let row = (at.y as usize).min(self.rows - 2);
         let share = (at - DVec2::new(column as f64, row as f64)).min(DVec2::ONE);
         let first = row * self.columns + column;
-        let mix = |a: (DVec2, f64), b: (DVec2, f64), t: f64| (a.0.lerp(b.0, t), a.1 + t * (b.1 - a.1));
+        let mix =
+            |a: (DVec2, f64), b: (DVec2, f64), t: f64| (a.0.lerp(b.0, t), a.1 + t * (b.1 - a.1));
         let below = mix(self.samples[first], self.samples[first + 1], share.x);
         let next = first + self.columns;
         let above = mix(self.samples[next], self.samples[next + 1], share.x);
@@ -87,12 +89,18 @@ impl Guide {
 
     /// The smallest size factor anywhere.
     pub(crate) fn least(&self) -> f64 {
-        self.samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min)
+        self.samples
+            .iter()
+            .map(|sample| sample.1)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The largest size factor anywhere.
     pub(crate) fn largest(&self) -> f64 {
-        self.samples.iter().map(|sample| sample.1).fold(0.0, f64::max)
+        self.samples
+            .iter()
+            .map(|sample| sample.1)
+            .fold(0.0, f64::max)
     }
 }
 

@@ -13,7 +13,8 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// The lattice point nearest to an offset from a lattice point, both in the lattice's own frame.
+    /// The lattice point nearest to an offset from a lattice point, both in the lattice's own frame; distances along each
+    /// axis count in steps.
     pub(crate) fn nearest(&self, offset: DVec2) -> DVec2 {
         let rows = offset.y / self.step.y;
         if self.shift == 0.0 {
@@ -25,7 +26,8 @@ impl Lattice {
             DVec2::new(column, row) * self.step
         };
         let (below, above) = (in_row(rows.floor()), in_row(rows.floor() + 1.0));
-        if offset.distance_squared(above) < offset.distance_squared(below) {
+        let steps = |point: DVec2| ((offset - point) / self.step).length_squared();
+        if steps(above) < steps(below) {
             above
         } else {
             below
@@ -47,19 +49,35 @@ mod tests {
 
     #[test]
     fn the_nearest_point_is_the_one_that_a_search_finds() {
-        for (step, shift) in [((2.0, 1.0), 0.0), ((2.0, 1.0), 0.5), ((1.0, 0.866), 0.5), ((3.0, 1.0), 0.25)] {
+        for (step, shift) in [
+            ((2.0, 1.0), 0.0),
+            ((2.0, 1.0), 0.5),
+            ((1.0, 0.866), 0.5),
+            ((3.0, 1.0), 0.25),
+        ] {
             let lattice = Lattice {
                 step: DVec2::from(step),
                 shift,
             };
-            let point = |x: i32, y: i32| DVec2::new(f64::from(x) + shift * f64::from(y), f64::from(y)) * lattice.step;
-            let all: Vec<DVec2> = (-9..10).flat_map(|x| (-9..10).map(move |y| point(x, y))).collect();
+            let point = |x: i32, y: i32| {
+                DVec2::new(f64::from(x) + shift * f64::from(y), f64::from(y)) * lattice.step
+            };
+            let all: Vec<DVec2> = (-9..10)
+                .flat_map(|x| (-9..10).map(move |y| point(x, y)))
+                .collect();
             for at in 0..200 {
-                let offset = DVec2::new(f64::from(at * 37 % 101) / 33.0 - 1.5, f64::from(at * 61 % 97) / 32.0 - 1.5);
+                let offset = DVec2::new(
+                    f64::from(at * 37 % 101) / 33.0 - 1.5,
+                    f64::from(at * 61 % 97) / 32.0 - 1.5,
+                );
+                let steps = |point: DVec2| ((offset - point) / lattice.step).length();
                 let found = lattice.nearest(offset);
                 assert!(all.iter().any(|point| point.distance(found) < 1e-12));
-                let best = all.iter().map(|point| point.distance(offset)).fold(f64::INFINITY, f64::min);
-                assert!(found.distance(offset) <= best + 1e-12);
+                let best = all
+                    .iter()
+                    .map(|point| steps(*point))
+                    .fold(f64::INFINITY, f64::min);
+                assert!(steps(found) <= best + 1e-12);
             }
         }
     }

@@ -25,6 +25,7 @@ pub(crate) use force::Law;
 pub(crate) use guide::Guide;
 pub(crate) use plan::{Method, Plan, pack};
 pub(crate) use start::Start;
+pub(crate) use walls::bounds;
 
 use glam::DVec2;
 

@@ -25,7 +25,10 @@ impl Neighbours {
         is_near: impl Fn(usize, usize, DVec2) -> bool + Sync,
     ) -> Neighbours {
         let sources = sources(points, period, reach);
-        let places: Vec<DVec2> = sources.iter().map(|(index, by)| points[*index as usize] + *by).collect();
+        let places: Vec<DVec2> = sources
+            .iter()
+            .map(|(index, by)| points[*index as usize] + *by)
+            .collect();
         let tiles = Tiles::new(&places, reach);
         let chunks = points.par_chunks(CHUNK).enumerate();
         let chunks = chunks.map(|(chunk, points)| {
@@ -46,7 +49,10 @@ impl Neighbours {
             }
             (ends, list)
         });
-        Neighbours { chunks: chunks.collect(), sources }
+        Neighbours {
+            chunks: chunks.collect(),
+            sources,
+        }
     }
 
     /// The sources near a particle.
@@ -60,7 +66,9 @@ impl Neighbours {
 
 /// The points, and their images as far as `reach` beyond the period.
 fn sources(points: &[DVec2], period: Option<DVec2>, reach: f64) -> Vec<(u32, DVec2)> {
-    let mut sources: Vec<(u32, DVec2)> = (0..points.len() as u32).map(|index| (index, DVec2::ZERO)).collect();
+    let mut sources: Vec<(u32, DVec2)> = (0..points.len() as u32)
+        .map(|index| (index, DVec2::ZERO))
+        .collect();
     let Some(period) = period else { return sources };
     let most = (reach / period).ceil().as_ivec2() + 1;
     for y in -most.y..=most.y {
@@ -92,8 +100,14 @@ impl Tiles {
     /// Sorts points into tiles of at least `tile` mm.
     pub(crate) fn new(points: &[DVec2], tile: f64) -> Tiles {
         let bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let (low, high) = points.iter().fold(bounds, |(low, high), point| (low.min(*point), high.max(*point)));
-        let extent = if points.is_empty() { DVec2::ZERO } else { high - low };
+        let (low, high) = points.iter().fold(bounds, |(low, high), point| {
+            (low.min(*point), high.max(*point))
+        });
+        let extent = if points.is_empty() {
+            DVec2::ZERO
+        } else {
+            high - low
+        };
         // No more tiles than points, about.
         let tile = tile.max((extent.x * extent.y / (2 * points.len() + 16) as f64).sqrt());
         let tile = tile.max(extent.max_element() / 30_000.0);
@@ -128,12 +142,10 @@ impl Tiles {
 
     fn tile_of(&self, point: DVec2) -> [usize; 2] {
         let at = (point - self.low) / self.tile;
-        [(at.x.max(0.0) as usize).min(self.columns - 1), (at.y.max(0.0) as usize).min(self.rows - 1)]
-    }
-
-    /// The points tile by tile.
-    pub(crate) fn order(&self) -> &[u32] {
-        &self.items
+        [
+            (at.x.max(0.0) as usize).min(self.columns - 1),
+            (at.y.max(0.0) as usize).min(self.rows - 1),
+        ]
     }
 
     /// Calls `take` with every point that is no farther than a tile's side, and some that are.

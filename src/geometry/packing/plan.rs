@@ -1,5 +1,6 @@
 //! From what is asked for to cells: the order of the steps.
 
+use super::Stone;
 use super::cells::{Bed, cells};
 use super::force::{Force, Law};
 use super::guide::Guide;
@@ -10,7 +11,6 @@ use super::relax::Relaxation;
 use super::settle::Dynamics;
 use super::start::{Ground, Start};
 use super::walls::Walls;
-use super::Stone;
 use crate::value::{Partition, Region};
 use glam::DVec2;
 
@@ -91,9 +91,14 @@ pub(crate) fn pack<E>(
         corners: plan.corners,
     };
     let mut packed = match plan.method {
-        Method::Particles { law, start, steps } => {
-            plan.particles(&ground, Force::new(plan.corners, law), start, steps, random, go_on)?
-        }
+        Method::Particles { law, start, steps } => plan.particles(
+            &ground,
+            Force::new(plan.corners, law),
+            start,
+            steps,
+            random,
+            go_on,
+        )?,
         Method::PositionField => plan.lattice_points(&ground, &bed, random, go_on)?,
     };
     let relaxation = plan.relaxation(&bed);
@@ -168,7 +173,10 @@ impl Plan<'_> {
             round += 1.0;
             go_on(0.5 * round / (round + 20.0))
         })?;
-        let mut points: Vec<DVec2> = stones(&field, &level).into_iter().map(|stone| stone.0).collect();
+        let mut points: Vec<DVec2> = stones(&field, &level)
+            .into_iter()
+            .map(|stone| stone.0)
+            .collect();
         if self.corners == 5 {
             points = self.pentagons(&points);
         }
@@ -180,7 +188,9 @@ impl Plan<'_> {
         if self.period.is_none() {
             points.retain(is_free);
         }
-        let stones = points.into_iter().map(|point| ground.stone_at(point, random()));
+        let stones = points
+            .into_iter()
+            .map(|point| ground.stone_at(point, random()));
         Ok(ground.apart(stones.collect(), 0.55))
     }
 
@@ -198,7 +208,10 @@ impl Plan<'_> {
         };
         let every = DVec2::new(1.0, if shift == 0.0 { 1.0 } else { 2.0 });
         let count = (period / (step * every)).round().max(DVec2::ONE) * every;
-        Lattice { step: period / count, shift }
+        Lattice {
+            step: period / count,
+            shift,
+        }
     }
 
     /// The stones of a Cairo tiling around the corners of its squares.
@@ -213,7 +226,9 @@ impl Plan<'_> {
         let around = |corner: &DVec2| {
             let wish = self.guide.at(*corner);
             let corner = *corner;
-            places.map(move |place| corner + wish.frame.rotate(DVec2::from(place) * side * wish.scale))
+            places.map(move |place| {
+                corner + wish.frame.rotate(DVec2::from(place) * side * wish.scale)
+            })
         };
         corners.iter().flat_map(around).collect()
     }
@@ -248,7 +263,8 @@ impl Plan<'_> {
         };
         let sizes = partition.ids.iter().map(size).collect();
         let count = partition.len();
-        let mut set = |name: &str, numbers: Vec<f64>| partition.attributes.insert(name.to_owned(), numbers);
+        let mut set =
+            |name: &str, numbers: Vec<f64>| partition.attributes.insert(name.to_owned(), numbers);
         set("size", sizes);
         set("aspect", vec![self.stone.x / self.stone.y; count]);
         set("corners", vec![f64::from(self.corners); count]);

@@ -104,7 +104,9 @@ impl Field<'_> {
 
     /// A sample at a point, if it is in the region.
     fn sample(&self, point: DVec2) -> Option<Sample> {
-        if let Some(walls) = self.walls && !walls.contains(point) {
+        if let Some(walls) = self.walls
+            && !walls.contains(point)
+        {
             return None;
         }
         let wish = self.guide.at(point);
@@ -128,7 +130,9 @@ impl Field<'_> {
         let half = sample.scale * self.first;
         let mut near: Vec<_> = walls
             .feet(sample.point)
-            .filter(|foot| foot.distance < 2.2 * half && foot.height(sample.point) > 0.98 * foot.distance)
+            .filter(|foot| {
+                foot.distance < 2.2 * half && foot.height(sample.point) > 0.98 * foot.distance
+            })
             .collect();
         near.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let mut held = 0;
@@ -203,7 +207,16 @@ impl Field<'_> {
             return DVec2::ZERO;
         };
         let (mut sum, mut weights) = (sample.origin, 0.0);
-        for (dx, dy) in [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)] {
+        for (dx, dy) in [
+            (1, 0),
+            (0, 1),
+            (-1, 0),
+            (0, -1),
+            (1, 1),
+            (-1, 1),
+            (-1, -1),
+            (1, -1),
+        ] {
             let Some(other) = level.at(x as i64 + dx, y as i64 + dy) else {
                 continue;
             };
@@ -231,16 +244,19 @@ impl Field<'_> {
     /// Gives each sample of a finer level the lattice of the one that stands for it.
     fn inherit(&self, coarse: &Level, fine: &mut Level) {
         let (columns, coarse_columns) = (fine.columns, coarse.columns);
-        fine.samples.par_iter_mut().enumerate().for_each(|(index, slot)| {
-            let (x, y) = (index % columns, index / columns);
-            let above = &coarse.samples[y / 2 * coarse_columns + x / 2];
-            if let (Some(sample), Some(above)) = (slot, above) {
-                let across = self.across(sample.point, above.point);
-                sample.origin = above.origin + across;
-                sample.origin = self.held(sample, sample.origin);
-                sample.origin = self.nearest(sample, sample.point);
-            }
-        });
+        fine.samples
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(index, slot)| {
+                let (x, y) = (index % columns, index / columns);
+                let above = &coarse.samples[y / 2 * coarse_columns + x / 2];
+                if let (Some(sample), Some(above)) = (slot, above) {
+                    let across = self.across(sample.point, above.point);
+                    sample.origin = above.origin + across;
+                    sample.origin = self.held(sample, sample.origin);
+                    sample.origin = self.nearest(sample, sample.point);
+                }
+            });
     }
 }
 
@@ -269,11 +285,17 @@ impl Level {
             let there = four.iter().flatten();
             let count = there.clone().map(|sample| sample.count).sum();
             // The one that is held most says where the lattice is.
-            let best = there.max_by_key(|it| it.walls.iter().filter(|wall| wall.0 != DVec2::ZERO).count())?;
+            let best = there
+                .max_by_key(|it| it.walls.iter().filter(|wall| wall.0 != DVec2::ZERO).count())?;
             Some(Sample { count, ..*best })
         };
         let samples = (0..columns * rows).into_par_iter().map(one).collect();
-        Level { columns, rows, wraps: self.wraps, samples }
+        Level {
+            columns,
+            rows,
+            wraps: self.wraps,
+            samples,
+        }
     }
 }
 
@@ -281,10 +303,17 @@ impl Level {
 pub(crate) fn stones(field: &Field<'_>, level: &Level) -> Vec<(DVec2, f64)> {
     let mut parents: Vec<u32> = (0..level.samples.len() as u32).collect();
     for index in 0..level.samples.len() {
-        let Some(sample) = &level.samples[index] else { continue };
-        let (x, y) = ((index % level.columns) as i64, (index / level.columns) as i64);
+        let Some(sample) = &level.samples[index] else {
+            continue;
+        };
+        let (x, y) = (
+            (index % level.columns) as i64,
+            (index / level.columns) as i64,
+        );
         for (dx, dy) in [(1, 0), (0, 1), (1, 1), (-1, 1)] {
-            let Some(other) = level.at(x + dx, y + dy) else { continue };
+            let Some(other) = level.at(x + dx, y + dy) else {
+                continue;
+            };
             let across = field.across(sample.point, other.point);
             let near = 0.35 * sample.scale * field.lattice.step.min_element();
             if (other.origin + across).distance_squared(sample.origin) < near * near {
@@ -299,7 +328,9 @@ pub(crate) fn stones(field: &Field<'_>, level: &Level) -> Vec<(DVec2, f64)> {
     let mut sums = vec![(DVec2::ZERO, 0.0); level.samples.len()];
     let mut order = vec![];
     for index in 0..level.samples.len() {
-        let Some(sample) = &level.samples[index] else { continue };
+        let Some(sample) = &level.samples[index] else {
+            continue;
+        };
         let first = root(&mut parents, index as u32) as usize;
         if first == index {
             order.push(index);
@@ -309,7 +340,10 @@ pub(crate) fn stones(field: &Field<'_>, level: &Level) -> Vec<(DVec2, f64)> {
         sums[first].0 += sample.origin + across;
         sums[first].1 += 1.0;
     }
-    order.into_iter().map(|index| (sums[index].0 / sums[index].1, sums[index].1)).collect()
+    order
+        .into_iter()
+        .map(|index| (sums[index].0 / sums[index].1, sums[index].1))
+        .collect()
 }
 
 fn root(parents: &mut [u32], index: u32) -> u32 {

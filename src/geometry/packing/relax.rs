@@ -70,7 +70,9 @@ impl Relaxation<'_> {
             go_on(round as f64 / ROUNDS as f64)?;
             if round % 8 == 0 {
                 if let Some(period) = self.period {
-                    stones.iter_mut().for_each(|stone| stone.point = stone.point.rem_euclid(period));
+                    stones
+                        .iter_mut()
+                        .for_each(|stone| stone.point = stone.point.rem_euclid(period));
                 }
                 neighbours = self.neighbours(stones);
             }
@@ -152,7 +154,8 @@ impl Relaxation<'_> {
         let Some(walls) = self.walls else { return };
         for foot in walls.feet(stone.point) {
             let across = stone.within(foot.inward);
-            let half = 0.5 * stone.scale * across.abs().dot(self.stone) / across.abs().element_sum();
+            let half =
+                0.5 * stone.scale * across.abs().dot(self.stone) / across.abs().element_sum();
             let height = foot.height(stone.point);
             if foot.distance < 1.8 * half && height > 0.98 * foot.distance {
                 pull.add(foot.inward, half - height, BORDER);

@@ -1,9 +1,9 @@
 //! Lets particles settle (Miyata, Itoh & Shimada, section 3): masses on dampers that push and pull each other.
 
+use super::Stone;
 use super::force::{Force, REACH};
 use super::guide::{Guide, nearest_turn};
 use super::neighbours::{CHUNK, Neighbours};
-use super::Stone;
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -46,7 +46,10 @@ impl Dynamics<'_> {
         let mut neighbours = Neighbours::default();
         let mut moved = f64::INFINITY;
         let size = self.stone.max_element();
-        let smallest = stones.iter().map(|stone| stone.scale).fold(f64::INFINITY, f64::min);
+        let smallest = stones
+            .iter()
+            .map(|stone| stone.scale)
+            .fold(f64::INFINITY, f64::min);
         for step in 0..self.steps {
             go_on(step as f64 / self.steps as f64)?;
             if step % TURNED == 0 {
@@ -54,7 +57,9 @@ impl Dynamics<'_> {
             }
             if moved > 0.5 * SKIN * smallest * self.stone.min_element() {
                 if let Some(period) = self.period {
-                    stones.iter_mut().for_each(|stone| stone.point = stone.point.rem_euclid(period));
+                    stones
+                        .iter_mut()
+                        .for_each(|stone| stone.point = stone.point.rem_euclid(period));
                 }
                 neighbours = self.neighbours(stones);
                 moved = 0.0;
@@ -97,7 +102,8 @@ impl Dynamics<'_> {
             let scale = 0.5 * (one.scale + other.scale);
             let reach = (REACH + SKIN) * scale;
             let within = if round { offset } else { other.within(offset) };
-            !(one.is_fixed && other.is_fixed) && (within / self.stone).length_squared() < reach * reach
+            !(one.is_fixed && other.is_fixed)
+                && (within / self.stone).length_squared() < reach * reach
         })
     }
 
@@ -132,5 +138,7 @@ impl Dynamics<'_> {
 /// Where all sources of force are.
 fn places(stones: &[Stone], neighbours: &Neighbours) -> Vec<DVec2> {
     let sources = neighbours.sources.iter();
-    sources.map(|(index, by)| stones[*index as usize].point + *by).collect()
+    sources
+        .map(|(index, by)| stones[*index as usize].point + *by)
+        .collect()
 }

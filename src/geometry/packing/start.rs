@@ -1,9 +1,9 @@
 //! Where particles begin: a row along the border, and the inside at the density that stones need.
 
+use super::Stone;
 use super::guide::Guide;
 use super::neighbours::Tiles;
 use super::walls::Walls;
-use super::Stone;
 use crate::value::Region;
 use glam::DVec2;
 
@@ -49,8 +49,15 @@ impl Ground<'_> {
     /// The paper puts them on the border itself; there half of each stone would have to be cut off.
     pub(crate) fn border(&self, random: &mut dyn FnMut() -> f64) -> Vec<Stone> {
         let mut stones: Vec<Stone> = vec![];
-        let mut chains: Vec<Vec<DVec2>> = self.region.rings().flat_map(|ring| self.chains(ring)).collect();
-        let ends: Vec<DVec2> = chains.iter().filter_map(|chain| chain.first().copied()).collect();
+        let mut chains: Vec<Vec<DVec2>> = self
+            .region
+            .rings()
+            .flat_map(|ring| self.chains(ring))
+            .collect();
+        let ends: Vec<DVec2> = chains
+            .iter()
+            .filter_map(|chain| chain.first().copied())
+            .collect();
         for end in ends {
             stones.push(self.stone_at(end, random()));
         }
@@ -60,7 +67,10 @@ impl Ground<'_> {
         let half = 0.5 * self.stone.min_element();
         stones.retain(|stone| {
             let near = self.walls.nearest(stone.point);
-            self.walls.contains(stone.point) && near.is_none_or(|foot| foot.distance > 0.8 * half * self.guide.at(stone.point).scale)
+            self.walls.contains(stone.point)
+                && near.is_none_or(|foot| {
+                    foot.distance > 0.8 * half * self.guide.at(stone.point).scale
+                })
         });
         let mut stones = self.apart(stones, 0.75);
         stones.iter_mut().for_each(|stone| stone.is_fixed = true);
@@ -95,9 +105,16 @@ impl Ground<'_> {
 
     /// Puts stones along a line, without its ends, as evenly as their sizes allow.
     fn fill(&self, chain: &[DVec2], random: &mut dyn FnMut() -> f64, stones: &mut Vec<Stone>) {
-        let lengths: Vec<f64> = chain.windows(2).map(|pair| pair[0].distance(pair[1])).collect();
+        let lengths: Vec<f64> = chain
+            .windows(2)
+            .map(|pair| pair[0].distance(pair[1]))
+            .collect();
         let total: f64 = lengths.iter().sum();
-        let size = self.stone.x * self.guide.at(chain[0].midpoint(chain[chain.len() - 1])).scale;
+        let size = self.stone.x
+            * self
+                .guide
+                .at(chain[0].midpoint(chain[chain.len() - 1]))
+                .scale;
         let count = (total / size).round() as usize;
         for index in 1..count {
             let mut left = total * index as f64 / count as f64;
@@ -106,13 +123,21 @@ impl Ground<'_> {
                 left -= lengths[piece];
                 piece += 1;
             }
-            let point = chain[piece].lerp(chain[piece + 1], left / lengths[piece].max(f64::MIN_POSITIVE));
+            let point = chain[piece].lerp(
+                chain[piece + 1],
+                left / lengths[piece].max(f64::MIN_POSITIVE),
+            );
             stones.push(self.stone_at(point, random()));
         }
     }
 
     /// Particles inside, none on those that are there already.
-    pub(crate) fn inside(&self, there: &[Stone], start: Start, random: &mut dyn FnMut() -> f64) -> Vec<Stone> {
+    pub(crate) fn inside(
+        &self,
+        there: &[Stone],
+        start: Start,
+        random: &mut dyn FnMut() -> f64,
+    ) -> Vec<Stone> {
         let [low, high] = self.walls.bounds();
         let mean = 0.5 * (self.spread[0] + self.spread[1]);
         let step = self.least * mean * self.stone;
@@ -149,13 +174,17 @@ impl Ground<'_> {
             tiles.around(one.point, |other| {
                 let other = other as usize;
                 let near = least * self.stone.min_element() * one.scale.min(stones[other].scale);
-                if other < index && is_kept[other] && stones[other].point.distance(one.point) < near {
+                if other < index && is_kept[other] && stones[other].point.distance(one.point) < near
+                {
                     is_kept[index] = false;
                 }
             });
         }
         let mut kept = is_kept.into_iter();
-        stones.into_iter().filter(|_| kept.next().unwrap_or(true)).collect()
+        stones
+            .into_iter()
+            .filter(|_| kept.next().unwrap_or(true))
+            .collect()
     }
 
     /// Leaves out stones behind the first `count` that are nearer than `least` stones to one of these.
@@ -167,7 +196,8 @@ impl Ground<'_> {
             tiles.around(stone.point, |other| {
                 let other = &stones[other as usize];
                 let scale = 0.5 * (stone.scale + other.scale);
-                nearest = nearest.min((other.within(stone.point - other.point) / (scale * self.stone)).length());
+                nearest = nearest
+                    .min((other.within(stone.point - other.point) / (scale * self.stone)).length());
             });
             is_apart |= nearest > least;
             is_apart
@@ -178,7 +208,10 @@ impl Ground<'_> {
 
     fn tiles(&self, stones: &[Stone]) -> Tiles {
         let points: Vec<DVec2> = stones.iter().map(|stone| stone.point).collect();
-        let largest = stones.iter().map(|stone| stone.scale).fold(self.least, f64::max);
+        let largest = stones
+            .iter()
+            .map(|stone| stone.scale)
+            .fold(self.least, f64::max);
         Tiles::new(&points, largest * self.stone.max_element())
     }
 }

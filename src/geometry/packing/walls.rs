@@ -24,12 +24,19 @@ pub(crate) struct Walls {
 pub(crate) struct Foot {
     /// The nearest point of the border.
     pub(crate) point: DVec2,
-    /// The segment that it lies on.
-    pub(crate) segment: u32,
     /// How far away it is, in mm.
     pub(crate) distance: f64,
     /// From the border into the region, of length 1: the segment's own normal.
     pub(crate) inward: DVec2,
+}
+
+/// Lowest and highest coordinates of a region.
+pub(crate) fn bounds(region: &Region) -> [DVec2; 2] {
+    let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+    let corners = region.rings().flatten();
+    corners.fold(none, |[low, high], corner| {
+        [low.min(*corner), high.max(*corner)]
+    })
 }
 
 /// Most tiles of a side.
@@ -43,13 +50,13 @@ impl Walls {
             let next = ring.iter().cycle().skip(1);
             segments.extend(ring.iter().zip(next).map(|(from, to)| [*from, *to]));
         }
-        let corners = region.rings().flatten();
-        let (low, high) = corners.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), corner| {
-            (low.min(*corner), high.max(*corner))
-        });
+        let [low, high] = bounds(region);
         let extent = high - low;
         let tile = reach.max(extent.max_element() / MOST);
-        let (columns, rows) = ((extent.x / tile) as usize + 1, (extent.y / tile) as usize + 1);
+        let (columns, rows) = (
+            (extent.x / tile) as usize + 1,
+            (extent.y / tile) as usize + 1,
+        );
         let mut walls = Walls {
             low,
             high,
@@ -75,10 +82,14 @@ impl Walls {
                 let [x0, y0] = self.tile_of(a.min(b) - reach);
                 let [x1, y1] = self.tile_of(a.max(b) + reach);
                 for y in y0..=y1 {
-                    entries.extend((x0..=x1).map(|x| ((y * self.columns + x) as u32, index as u32)));
+                    entries
+                        .extend((x0..=x1).map(|x| ((y * self.columns + x) as u32, index as u32)));
                 }
             }
-            let (bottom, top) = (self.tile_of(from.min(*to))[1], self.tile_of(from.max(*to))[1]);
+            let (bottom, top) = (
+                self.tile_of(from.min(*to))[1],
+                self.tile_of(from.max(*to))[1],
+            );
             self.crossing[bottom..=top]
                 .iter_mut()
                 .for_each(|row| row.push(index as u32));
@@ -104,11 +115,6 @@ impl Walls {
     /// Lowest and highest coordinates.
     pub(crate) fn bounds(&self) -> [DVec2; 2] {
         [self.low, self.high]
-    }
-
-    /// The segments of the border, in the order of the region's rings.
-    pub(crate) fn segments(&self) -> &[[DVec2; 2]] {
-        &self.segments
     }
 
     /// Whether a point lies inside.
@@ -150,7 +156,9 @@ impl Walls {
         let [x, y] = self.tile_of(point);
         let tile = y * self.columns + x;
         let near = self.starts[tile] as usize..self.starts[tile + 1] as usize;
-        self.near[near].iter().map(move |index| self.foot(*index, point))
+        self.near[near]
+            .iter()
+            .map(move |index| self.foot(*index, point))
     }
 
     fn foot(&self, segment: u32, point: DVec2) -> Foot {
@@ -161,7 +169,6 @@ impl Walls {
         let nearest = from + share * along;
         Foot {
             point: nearest,
-            segment,
             distance: point.distance(nearest),
             inward: along.perp() / length.sqrt(),
         }

@@ -2,6 +2,7 @@
 
 pub mod adjust_colour;
 pub mod combine;
+pub mod direction_field;
 pub mod image_from_file;
 pub mod math;
 pub(in crate::nodes) mod placement;

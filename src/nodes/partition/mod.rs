@@ -9,3 +9,4 @@ pub mod per_cell;
 pub mod region_cells;
 pub mod split_cells;
 pub mod voronoi_split;
+pub mod square_packing;

@@ -1,0 +1,278 @@
+//! `square_packing`: stones of one kind packed into a region, along a direction field.
+
+use super::ground::{self, Ground};
+use crate::field::Field;
+use crate::geometry::packing::direction::{Directions, power};
+use crate::geometry::packing::{Guide, Law, Method, Plan, Start, bounds, pack};
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::nodes::random::Random;
+use crate::value::{Domain, Partition, Type, Unit, Value};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Packs stones.
+pub static KIND: Kind = Kind {
+    name: "square_packing",
+    version: 1,
+    about: "Packs stones into a region: squares, oblong stones, pentagons or hexagons that follow the border or a direction \
+            field, without gaps, and fitted to the outline.",
+    source: "Miyata, Itoh & Shimada, section 3 (particles); Jakob, Tarini, Panozzo & Sorkine-Hornung 2015 (position_field)",
+    inputs: &[
+        ground::REGION,
+        ground::SIZE,
+        ground::PERIOD,
+        Input::number(
+            "stone",
+            Unit::Millimetre,
+            "Width of a stone with its joint; of pentagons and hexagons the distance to the next.",
+        )
+        .range(1e-3, 1e6),
+        Input::number("aspect", Unit::One, "Length of a stone over its width.")
+            .default("1")
+            .range(1.0, 8.0),
+        Input::new("corners", Type::Whole, "Corners of a stone: 4, 5 or 6.")
+            .default("4")
+            .range(4.0, 6.0),
+        Input::new(
+            "spread",
+            Type::Pair(Unit::One),
+            "Smallest and largest random factor to the size of each stone.",
+        )
+        .default("(0.8, 1.2)")
+        .range(0.3, 3.0),
+        Input::number(
+            "scale",
+            Unit::One,
+            "Factor to the size of stones at each place.",
+        )
+        .per_point()
+        .of(Domain::Plane)
+        .default("1")
+        .range(LEAST, LARGEST),
+        Input::new(
+            "direction",
+            Type::Vector(Unit::One),
+            "The direction that stones follow, as `direction_field` gives it; left out, that of the border, or the x axis where \
+             the cells repeat.",
+        )
+        .per_point()
+        .of(Domain::Plane)
+        .optional(),
+        Input::new(
+            "method",
+            Type::Choice(&["position_field", "particles"]),
+            "position_field: rows that follow the direction, the fewest faults; particles: settling squares, with the faults \
+             that they leave.",
+        )
+        .default("position_field"),
+        Input::number(
+            "bond",
+            Unit::One,
+            "How far each row is moved against the one before, in stones: 0.5 is a running bond. For `position_field`.",
+        )
+        .default("0")
+        .range(0.0, 0.5),
+        Input::new(
+            "force",
+            Type::Choice(&["radial", "five_sources"]),
+            "For `particles`: the cubics added up along the line between two stones, or each along its own.",
+        )
+        .default("radial"),
+        Input::new(
+            "start",
+            Type::Choice(&["lattice", "random"]),
+            "Where `particles` begin.",
+        )
+        .default("lattice"),
+        Input::new("steps", Type::Whole, "Most steps that `particles` take.")
+            .default("600")
+            .range(0.0, 100_000.0),
+        Input::new(
+            "mend",
+            Type::Toggle,
+            "Fills empty places and thins out crowded ones; left out, it is done for `position_field` alone.",
+        )
+        .optional(),
+        Input::new("seed", Type::Whole, "Another seed gives other stones.").default("0"),
+    ],
+    outputs: &[Output::new(
+        "cells",
+        Type::Partition,
+        "A cell for each stone, with the attributes `size` (mm), `aspect` and `corners`.",
+    )],
+    example: r#"(nodes: { "example": square_packing(size: (2000, 1500), stone: 100) })"#,
+    build,
+};
+
+/// Range of the size factor.
+const LEAST: f64 = 0.05;
+const LARGEST: f64 = 20.0;
+
+/// Most stones.
+const MOST: f64 = 4e6;
+
+fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let ground = Ground::read(inputs)?;
+    let shape = Shape::read(inputs)?;
+    let guide = guide(inputs, build, &ground, &shape)?;
+    let spread = inputs.pair("spread");
+    if spread[0] > spread[1] {
+        let message = format!(
+            "expected the smaller number first, found ({}, {})",
+            spread[0], spread[1]
+        );
+        return Err(Failure::of_input("spread", message));
+    }
+    let method = method(inputs);
+    let mends = match inputs.get("mend") {
+        Some(_) => inputs.toggle("mend"),
+        None => method == Method::PositionField,
+    };
+    let plan = Plan {
+        region: &ground.region,
+        period: ground.period,
+        stone: shape.stone,
+        corners: shape.corners,
+        spread,
+        bond: inputs.number("bond"),
+        method,
+        mends,
+        guide: &guide,
+        symmetry: shape.symmetry,
+    };
+    let mut random = Random::new(build.seed, KIND.name, inputs.whole("seed"));
+    let mut share = || f64::from(random.share());
+    let partition = pack(&plan, &mut share, &mut |fraction| {
+        inputs.progress(fraction);
+        build.go_on()
+    })?;
+    checked(partition)
+}
+
+fn checked(partition: Partition) -> Result<Vec<Value>, Failure> {
+    if partition.is_empty() {
+        let failure = Failure::of_input("stone", "no stone has room in the region");
+        return Err(failure.with_hint("take smaller stones, or a larger region"));
+    }
+    Ok(vec![Value::Partition(Arc::new(partition))])
+}
+
+fn method(inputs: &Inputs<'_>) -> Method {
+    if inputs.choice("method") != "particles" {
+        return Method::PositionField;
+    }
+    Method::Particles {
+        law: match inputs.choice("force") {
+            "five_sources" => Law::Sources,
+            _ => Law::Radial,
+        },
+        start: match inputs.choice("start") {
+            "random" => Start::Random,
+            _ => Start::Lattice,
+        },
+        steps: usize::try_from(inputs.whole("steps")).unwrap_or_default(),
+    }
+}
+
+/// What a stone is like.
+struct Shape {
+    stone: DVec2,
+    corners: u32,
+    /// In how many parts of a turn it looks the same.
+    symmetry: u32,
+}
+
+impl Shape {
+    fn read(inputs: &Inputs<'_>) -> Result<Shape, Failure> {
+        let (width, aspect) = (inputs.number("stone"), inputs.number("aspect"));
+        let corners = inputs.whole("corners") as u32;
+        if corners != 4 && aspect != 1.0 {
+            let failure = Failure::of_input("aspect", "only stones with 4 corners can be oblong");
+            return Err(failure.with_hint("leave out `aspect` or `corners`"));
+        }
+        let is_oblong = aspect != 1.0 || inputs.number("bond") != 0.0;
+        Ok(Shape {
+            stone: DVec2::new(aspect * width, width),
+            corners,
+            symmetry: match corners {
+                6 => 6,
+                4 if is_oblong => 2,
+                _ => 4,
+            },
+        })
+    }
+}
+
+/// Direction and size at every place.
+fn guide(
+    inputs: &Inputs<'_>,
+    build: &Build<'_>,
+    ground: &Ground,
+    shape: &Shape,
+) -> Result<Guide, Failure> {
+    let bounds = bounds(&ground.region);
+    let extent = bounds[1] - bounds[0];
+    let scale = inputs.field("scale");
+    if extent.x * extent.y > MOST * shape.stone.x * shape.stone.y {
+        let count = extent.x * extent.y / (shape.stone.x * shape.stone.y);
+        let message = format!("expected at most {MOST} stones, found about {count:.0}");
+        let failure = Failure::of_input("stone", message);
+        return Err(failure.with_hint("take larger stones, or a smaller region"));
+    }
+    let (points, columns) = Guide::points(bounds, shape.stone.y);
+    let turned = turned(inputs, build, ground, shape.symmetry, &points)?;
+    let scales = build.sample(&scale, &points)?;
+    let scales: Vec<f64> = scales[0]
+        .iter()
+        .map(|scale| f64::from(*scale).clamp(LEAST, LARGEST))
+        .collect();
+    if scales.iter().any(|scale| scale.is_nan()) {
+        return Err(Failure::of_input(
+            "scale",
+            "expected numbers, found places where it is none",
+        ));
+    }
+    Ok(Guide::new(
+        bounds,
+        columns,
+        shape.symmetry,
+        &turned,
+        &scales,
+    ))
+}
+
+/// The directions at points, turned as often as the symmetry says.
+fn turned(
+    inputs: &Inputs<'_>,
+    build: &Build<'_>,
+    ground: &Ground,
+    symmetry: u32,
+    points: &[DVec2],
+) -> Result<Vec<DVec2>, Failure> {
+    let field: Option<Field> = inputs.optional_field("direction");
+    match (field, ground.period) {
+        (Some(field), _) => {
+            let columns = build.sample(&field, points)?;
+            let parts = columns[0].par_iter().zip(&columns[1]);
+            let turned = parts.map(|(x, y)| {
+                let vector = DVec2::new(f64::from(*x), f64::from(*y));
+                power(vector.try_normalize().unwrap_or(DVec2::X), symmetry)
+            });
+            Ok(turned.collect())
+        }
+        (None, Some(_)) => Ok(vec![DVec2::X; points.len()]),
+        (None, None) => {
+            let directions = Directions::of_border(&ground.region, symmetry);
+            let rows = points.par_chunks(1024).map(|points| {
+                build.go_on()?;
+                Ok(points
+                    .iter()
+                    .map(|point| directions.at(*point).sum)
+                    .collect())
+            });
+            let rows: Result<Vec<Vec<DVec2>>, Failure> = rows.collect();
+            rows.map(|rows| rows.concat())
+        }
+    }
+}
