@@ -8,5 +8,5 @@ mod ground;
 pub mod per_cell;
 pub mod region_cells;
 pub mod split_cells;
-pub mod voronoi_split;
 pub mod square_packing;
+pub mod voronoi_split;
