@@ -5,6 +5,8 @@
 //! slots by liveness, so a program needs as many buffers as are alive at once.
 
 use super::charts::Charts;
+use super::guards::{self, Guard};
+use super::places::{ColumnsOf, Places};
 use super::within::{Member, Sharing, Within};
 use super::{Field, Kernel, Operation, Sampling};
 use crate::cancel::Cancel;
@@ -16,6 +18,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Program {
     pub(super) steps: Vec<Step>,
+    /// For each step which choice it is needed for, if it is not needed always.
+    pub(super) guards: Vec<Option<Guard>>,
     /// Programs that give fields inside single pixels.
     pub(super) within: Vec<Within>,
     pub(super) slots: usize,
@@ -96,20 +100,11 @@ impl Program {
     }
 }
 
-/// A place where positions come from: the samples themselves, or three columns of another domain.
-struct Place {
-    key: Key,
-    position: [usize; 3],
-    /// The domain this one was opened in, and the field that moves the points.
-    outer: Option<(usize, Field)>,
-}
-
 pub(super) struct Compiler {
     supersampling: bool,
     charts: Charts,
-    places: Vec<Place>,
-    place_of: HashMap<(usize, Key), usize>,
-    columns_of: HashMap<(Key, usize), Vec<usize>>,
+    places: Places,
+    columns_of: ColumnsOf,
     spread_of: HashMap<usize, [usize; 2]>,
     constant_of: HashMap<u32, usize>,
     constant_columns: HashSet<usize>,
@@ -122,16 +117,10 @@ pub(super) struct Compiler {
 
 impl Compiler {
     pub(super) fn new(supersampling: bool, charts: &[Field]) -> Compiler {
-        let root = Place {
-            key: KeyHasher::new("root", 1).finish(),
-            position: POSITION,
-            outer: None,
-        };
         Compiler {
             supersampling,
             charts: Charts::of(charts),
-            places: vec![root],
-            place_of: HashMap::new(),
+            places: Places::new(),
             columns_of: HashMap::new(),
             spread_of: HashMap::new(),
             constant_of: HashMap::new(),
@@ -158,13 +147,15 @@ impl Compiler {
             })
             .collect();
         let margin = super::cost::assign_margins(&mut self.steps, self.columns);
+        let outputs = outputs?;
         let program = Program {
+            guards: guards::guards(&self.steps, &outputs, self.columns),
             steps: self.steps,
             within: self.sharing.programs(),
             slots: self.columns,
             constants: self.constants,
             remainder: self.remainder,
-            outputs: outputs?,
+            outputs,
             margin,
             key: key.finish(),
         };
@@ -217,38 +208,30 @@ impl Compiler {
         let wanted = match &field.0.operation {
             Operation::Constant(_) | Operation::Position | Operation::Remainder => vec![],
             Operation::Part { of, .. } => vec![(of.clone(), place)],
-            Operation::Kernel { inputs, .. } => {
-                inputs.iter().map(|input| (input.clone(), place)).collect()
+            Operation::Kernel { kernel, inputs, .. } => {
+                let choice = kernel.alternatives().map(|it| inputs[it.choice].clone());
+                match choice.filter(|it| !self.columns_of.contains_key(&(it.key(), place))) {
+                    // The choice comes before what is chosen, which then may be left out.
+                    Some(choice) => vec![(choice, place)],
+                    None => inputs.iter().map(|input| (input.clone(), place)).collect(),
+                }
             }
-            Operation::At { field, position } => match self.inner_place(place, position) {
-                Some(inner) => vec![(field.clone(), inner)],
-                None => vec![(position.clone(), place)],
-            },
+            Operation::At { field, opening } => {
+                match self.places.open(place, opening, &self.columns_of) {
+                    Some(inner) => vec![(field.clone(), inner)],
+                    None => opening.fields().map(|it| (it.clone(), place)).collect(),
+                }
+            }
+            Operation::Given { name, otherwise } => {
+                match self.places.given(name, field.width(), place) {
+                    Some(_) => vec![],
+                    None => vec![(otherwise.clone(), place)],
+                }
+            }
         };
         let unknown =
             |wanted: &(Field, usize)| !self.columns_of.contains_key(&(wanted.0.key(), wanted.1));
         wanted.into_iter().filter(unknown).collect()
-    }
-
-    /// The place that `position` opens inside `place`, once the columns of `position` are known.
-    fn inner_place(&mut self, place: usize, position: &Field) -> Option<usize> {
-        if let Some(known) = self.place_of.get(&(place, position.key())) {
-            return Some(*known);
-        }
-        let columns = self.columns_of.get(&(position.key(), place))?;
-        let position_columns = [columns[0], columns[1], columns[2]];
-        let key = KeyHasher::new("place", 1)
-            .key(self.places[place].key)
-            .key(position.key())
-            .finish();
-        self.places.push(Place {
-            key,
-            position: position_columns,
-            outer: Some((place, position.clone())),
-        });
-        let inner = self.places.len() - 1;
-        self.place_of.insert((place, position.key()), inner);
-        Some(inner)
     }
 
     /// Emits the step of a field whose dependencies have columns; gives its columns.
@@ -257,14 +240,19 @@ impl Compiler {
             Operation::Constant(values) => {
                 values.iter().map(|value| self.constant(*value)).collect()
             }
-            Operation::Position => self.places[place].position.to_vec(),
+            Operation::Position => self.places.position(place).to_vec(),
             Operation::Remainder => vec![self.remainder(place)],
             Operation::Part { of, first } => {
                 self.columns_of[&(of.key(), place)][*first..*first + field.width()].to_vec()
             }
-            Operation::At { field, position } => {
-                let inner = self.place_of[&(place, position.key())];
+            Operation::At { field, opening } => {
+                let inner = self.places.inner(place, opening);
                 self.columns_of[&(field.key(), inner)].clone()
+            }
+            Operation::Given { name, otherwise } => {
+                let given = self.places.given(name, field.width(), place);
+                let meant = given.unwrap_or((otherwise.key(), place));
+                self.columns_of[&meant].clone()
             }
             Operation::Kernel {
                 kernel,
@@ -296,13 +284,13 @@ impl Compiler {
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
         self.sharing.note(&*kernel, &inputs, &outputs);
         let within = self.may_be_supersampled(&*kernel, &inputs).then(|| {
-            let seen = self.seen_from_root(field, place);
+            let seen = self.places.seen_from_root(field, place);
             let mixes = kernel.mixes_charts();
             self.sharing
                 .join(seen, outputs[0], &self.charts.fields, mixes)
         });
         let mut key = KeyHasher::new("step", 1);
-        key.key(field.key()).key(self.places[place].key);
+        key.key(field.key()).key(self.places.key(place));
         self.charts.add_to_key(&mut key);
         let charts = match within {
             Some(_) if !kernel.mixes_charts() => self.charts.columns.clone(),
@@ -335,16 +323,6 @@ impl Compiler {
         self.supersampling && needs_samples
     }
 
-    /// The field as seen from the samples' own positions.
-    fn seen_from_root(&self, field: &Field, mut place: usize) -> Field {
-        let mut field = field.clone();
-        while let Some((outer, position)) = &self.places[place].outer {
-            field = field.at(position);
-            place = *outer;
-        }
-        field
-    }
-
     fn spread(&mut self, of: usize) -> [usize; 2] {
         if let Some(known) = self.spread_of.get(&of) {
             return *known;
@@ -369,7 +347,7 @@ impl Compiler {
 
     /// The column of what rounding took from the position: of a place that a field opens nothing is known.
     fn remainder(&mut self, place: usize) -> usize {
-        if self.places[place].outer.is_some() {
+        if !self.places.is_root(place) {
             return self.constant(0.0);
         }
         let known = self.remainder.unwrap_or_else(|| self.new_column());

@@ -1,5 +1,6 @@
 //! What a node's maths looks like to the engine: columns in, columns out.
 
+use super::Alternatives;
 use crate::key::KeyHasher;
 use fearless_simd::Level;
 use std::fmt::Debug;
@@ -59,6 +60,11 @@ pub trait Kernel: Send + Sync + Debug {
     /// side by side in it, and not a piece.
     fn mixes_charts(&self) -> bool {
         false
+    }
+
+    /// The inputs of which it reads one alternative in each sample, if it has such: the others need not be computed.
+    fn alternatives(&self) -> Option<Alternatives> {
+        None
     }
 
     /// Nanoseconds of work per sample, roughly; dear columns are worth caching.

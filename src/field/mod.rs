@@ -7,7 +7,10 @@
 mod charts;
 mod compile;
 mod cost;
+mod given;
+mod guards;
 mod kernel;
+mod places;
 mod points;
 mod run;
 mod samples;
@@ -18,6 +21,8 @@ mod transpose;
 mod within;
 
 pub use compile::Program;
+pub(crate) use given::names_read;
+pub use guards::Alternatives;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};
 pub(crate) use points::at_points;
 pub use run::{ColumnCache, Columns, RunContext, Scratch, Work};
@@ -59,8 +64,19 @@ enum Operation {
         inputs: Vec<Field>,
         node: Arc<str>,
     },
-    /// A field of another domain, evaluated where `position` points.
-    At { field: Field, position: Field },
+    /// A field of another domain, evaluated where an opening leads.
+    At { field: Field, opening: Arc<Opening> },
+    /// What the nearest opening around gives under this name; `otherwise` if none does.
+    Given { name: Arc<str>, otherwise: Field },
+}
+
+/// A way into another domain: where its points are, and what is known there of the domain that it was opened in.
+#[derive(Debug)]
+struct Opening {
+    key: Key,
+    position: Field,
+    /// Fields of the domain around, by the names under which fields inside read them.
+    given: Vec<(Arc<str>, Field)>,
 }
 
 impl Field {
@@ -155,18 +171,46 @@ impl Field {
 
     /// This field where `position` points: the way from a plane into the solid it cuts.
     pub fn at(&self, position: &Field) -> Field {
-        if self.domain() == Domain::Everywhere {
-            return self.clone();
+        match self.domain() {
+            Domain::Everywhere => self.clone(),
+            _ => self.through(&Arc::new(Opening::new(position, vec![]))),
         }
+    }
+
+    /// This field where `position` points, while fields made by [`Field::given`] have the values that `given` has for
+    /// them around: the way into a cell.
+    pub fn at_given(&self, position: &Field, given: &[(Arc<str>, Field)]) -> Field {
+        match self.as_constant() {
+            Some(_) => self.clone(),
+            None => self.through(&Arc::new(Opening::new(position, given.to_vec()))),
+        }
+    }
+
+    /// What the place around says under `name`, for a field that is used in many places: in the first one outwards
+    /// that was opened by [`Field::at_given`] with this name and as many columns. `otherwise` where there is none.
+    pub fn given(name: &str, otherwise: &Field) -> Field {
+        let key = KeyHasher::new("given", 1)
+            .text(name)
+            .key(otherwise.key())
+            .finish();
+        let (width, domain) = (otherwise.width(), otherwise.domain());
+        let operation = Operation::Given {
+            name: name.into(),
+            otherwise: otherwise.clone(),
+        };
+        Field::new(key, width, domain, operation)
+    }
+
+    fn through(&self, opening: &Arc<Opening>) -> Field {
         let key = KeyHasher::new("at", 1)
             .key(self.key())
-            .key(position.key())
+            .key(opening.key)
             .finish();
         let operation = Operation::At {
             field: self.clone(),
-            position: position.clone(),
+            opening: Arc::clone(opening),
         };
-        Field::new(key, self.width(), position.domain(), operation)
+        Field::new(key, self.width(), opening.position.domain(), operation)
     }
 
     /// The hash that identifies the field's values.
@@ -202,6 +246,26 @@ impl Field {
     }
 }
 
+impl Opening {
+    fn new(position: &Field, given: Vec<(Arc<str>, Field)>) -> Opening {
+        let mut key = KeyHasher::new("opening", 1);
+        key.key(position.key());
+        for (name, field) in &given {
+            key.text(name).key(field.key());
+        }
+        Opening {
+            key: key.finish(),
+            position: position.clone(),
+            given,
+        }
+    }
+
+    /// The fields of the domain around.
+    fn fields(&self) -> impl Iterator<Item = &Field> {
+        std::iter::once(&self.position).chain(self.given.iter().map(|(_, field)| field))
+    }
+}
+
 impl Operation {
     /// Moves the fields this operation depends on into `fields`.
     fn release_into(&mut self, fields: &mut Vec<Field>) {
@@ -209,7 +273,14 @@ impl Operation {
             Operation::Constant(_) | Operation::Position | Operation::Remainder => {}
             Operation::Part { of, .. } => fields.push(of),
             Operation::Kernel { inputs, .. } => fields.extend(inputs),
-            Operation::At { field, position } => fields.extend([field, position]),
+            Operation::At { field, opening } => {
+                fields.push(field);
+                if let Some(opening) = Arc::into_inner(opening) {
+                    fields.push(opening.position);
+                    fields.extend(opening.given.into_iter().map(|(_, field)| field));
+                }
+            }
+            Operation::Given { otherwise, .. } => fields.push(otherwise),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Runs a program over one block of samples.
 
 use super::compile::{KernelStep, POSITION, Program, Step};
+use super::guards::Guard;
 use super::supersample::{Averages, supersample};
 use super::{Block, InputColumn, Kernel, Samples, charts, spread};
 use crate::cancel::Cancel;
@@ -132,12 +133,14 @@ impl Program {
         scratch.prepare(self, samples, padded);
         let stored = self.stored(samples, context);
         let needed = self.needed(&stored);
-        for ((step, stored), needed) in self.steps.iter().zip(&stored).zip(needed) {
+        let steps = self.steps.iter().zip(&self.guards);
+        for (((step, guard), stored), needed) in steps.zip(&stored).zip(needed) {
             if context.is_cancelled() {
                 return;
             }
+            let is_wanted = |guard: &Guard| scratch.column(guard.column).contains(&guard.value);
             match (step, stored) {
-                _ if !needed => {}
+                _ if !needed || !guard.as_ref().is_none_or(is_wanted) => {}
                 (Step::Spread { of, along, joins }, _) => {
                     let shape = shape(samples, context);
                     write_columns(scratch, *along, |scratch, columns| {
@@ -218,7 +221,9 @@ impl Program {
             // Before this step its slots belong to other columns.
             writes.iter().for_each(|slot| wanted[*slot] = false);
             if !matches!(stored[index], Stored::Columns(_)) {
-                step.reads().iter().for_each(|slot| wanted[*slot] = true);
+                let guard = self.guards[index].map(|guard| guard.column);
+                let reads = step.reads().into_iter().chain(guard);
+                reads.for_each(|slot| wanted[slot] = true);
             }
         }
         needed

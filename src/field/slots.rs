@@ -12,9 +12,11 @@ pub(super) fn assign(mut program: Program) -> Program {
         .iter_mut()
         .for_each(|(column, _)| *column = slots.of[*column]);
     for (index, step) in program.steps.iter_mut().enumerate() {
+        let guard = &mut program.guards[index];
         let dying: Vec<usize> = step
             .reads()
             .into_iter()
+            .chain(guard.map(|guard| guard.column))
             .filter(|column| last_read[*column] == index)
             .collect();
         let unread: Vec<usize> = step
@@ -26,6 +28,9 @@ pub(super) fn assign(mut program: Program) -> Program {
             .into_iter()
             .for_each(|column| slots.take(column));
         step.rename(&slots.of);
+        if let Some(guard) = guard {
+            guard.column = slots.of[guard.column];
+        }
         dying
             .into_iter()
             .chain(unread)
@@ -44,8 +49,10 @@ pub(super) fn assign(mut program: Program) -> Program {
 fn last_reads(program: &Program) -> Vec<usize> {
     let mut last = vec![0; program.slots];
     for (index, step) in program.steps.iter().enumerate() {
+        let guard = program.guards[index].map(|guard| guard.column);
         step.reads()
             .into_iter()
+            .chain(guard)
             .for_each(|column| last[column] = index);
     }
     let pinned = program.constants.iter().map(|(column, _)| column);

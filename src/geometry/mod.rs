@@ -2,6 +2,8 @@
 
 pub(crate) mod assemble;
 mod box_tree;
+pub(crate) mod cells;
+pub(crate) mod heights;
 pub(crate) mod hierarchy;
 pub(crate) mod inset;
 pub(crate) mod level_surface;
@@ -10,4 +12,6 @@ pub(crate) mod nurbs;
 pub(crate) mod patch_grid;
 pub(crate) mod polygon;
 pub mod spline;
+pub(crate) mod subdivision;
 mod tangents;
+pub(crate) mod voronoi;

@@ -52,14 +52,18 @@ impl Linker<'_, '_> {
         {
             self.may_vary(name, tree.span.clone(), input)?;
         }
-        if input.value_type != Type::Channels
+        if !matches!(input.value_type, Type::Channels | Type::Materials)
             && let Some(passed) = self.passed(tree, slot)
         {
             return passed;
         }
         match (input.value_type, &tree.shape) {
             (Type::File, _) => self.file(tree, slot),
-            (Type::Channels, Shape::Map(_)) => self.channels(tree, input),
+            (Type::Channels | Type::Materials, Shape::Map(_)) => self.channels(tree, input),
+            (Type::Materials, Shape::Text(text)) => {
+                let link = self.material(tree, input)?;
+                Some(Source::Channels(vec![(text.value.clone(), link)]))
+            }
             (Type::Text | Type::Choice(_) | Type::Names, _) => {
                 self.reader.literal(tree, slot).map(Source::Literal)
             }
@@ -105,7 +109,7 @@ impl Linker<'_, '_> {
         )))
     }
 
-    /// A map from names to numbers, colours and, by links, vectors.
+    /// A map from names to numbers, colours and, by links, vectors; or to materials.
     fn channels(&mut self, tree: &Tree, input: &Input) -> Option<Source> {
         let Shape::Map(entries) = &tree.shape else {
             return None;
@@ -120,10 +124,27 @@ impl Linker<'_, '_> {
             if let Some(first) = seen.insert(name, span.clone()) {
                 report_duplicate_name(self.reader.report, "channel", name, span, first);
             }
-            let channel = self.channel(name, &entry.value, input);
+            let channel = match input.value_type {
+                Type::Materials => self.material(&entry.value, input),
+                _ => self.channel(name, &entry.value, input),
+            };
             channels.extend(channel.map(|source| (name.to_owned(), source)));
         }
         (channels.len() == entries.len()).then_some(Source::Channels(channels))
+    }
+
+    /// A link to a material, one of those that an input takes.
+    fn material(&mut self, tree: &Tree, input: &Input) -> Option<Source> {
+        let one = Input {
+            value_type: Type::Material,
+            ..*input
+        };
+        match &tree.shape {
+            Shape::Text(text) if parameter_name(&text.value).is_none() => {
+                self.text_source(tree, text, &one)
+            }
+            _ => self.reader.mismatch(tree, Slot::from(&one)),
+        }
     }
 
     /// A number or a colour, whichever it is, or a link to one or to a vector.

@@ -96,6 +96,7 @@ impl<'c> Reader<'c> {
             | Type::Region
             | Type::Partition
             | Type::Material
+            | Type::Materials
             | Type::Maps => self.mismatch(tree, slot),
         }
     }

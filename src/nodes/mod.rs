@@ -1,5 +1,6 @@
 //! The kinds of nodes, in families: one file each, and one line each in the table below.
 
+mod average;
 mod cells;
 pub mod cut;
 pub mod field;
@@ -11,6 +12,7 @@ mod random;
 pub mod region;
 pub mod rings;
 pub mod shape;
+pub mod stone;
 pub mod surface;
 pub mod view;
 pub mod wood;
@@ -61,6 +63,8 @@ pub static KINDS: &[&Kind] = &[
     &rings::growth_model::KIND,
     &shape::block::KIND,
     &shape::log::KIND,
+    &shape::subdivide::KIND,
+    &stone::stones::KIND,
     &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
@@ -71,6 +75,16 @@ pub static KINDS: &[&Kind] = &[
     &region::combine_regions::KIND,
     &region::grow_region::KIND,
     &region::region_field::KIND,
+    &partition::inset_cells::KIND,
+    &partition::cell_attribute::KIND,
+    &partition::cell_table::KIND,
+    &partition::cell_fields::KIND,
+    &partition::cell_value::KIND,
+    &partition::per_cell::KIND,
+    &partition::region_cells::KIND,
+    &partition::split_cells::KIND,
+    &partition::voronoi_split::KIND,
+    &surface::inlay::KIND,
 ];
 
 /// The kind called `name`.

@@ -1,5 +1,6 @@
 //! Partitions: a part of the plane divided into cells.
 
+use crate::key::{Key, KeyHasher};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -68,6 +69,32 @@ impl Partition {
     pub fn outline(&self, cell: usize) -> &[DVec2] {
         let outline = self.rings_of(cell).next().unwrap_or_default();
         &self.corners[outline]
+    }
+
+    /// The lowest and the highest corner of the box around a cell.
+    pub fn box_of(&self, cell: usize) -> [DVec2; 2] {
+        let outline = self.rings_of(cell).next().unwrap_or_default();
+        let mut around = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+        for corner in outline.clone() {
+            let next = if corner + 1 == outline.end {
+                outline.start
+            } else {
+                corner + 1
+            };
+            let (from, to) = (self.corners[corner], self.corners[next]);
+            // An arc reaches no farther beside its chord than its sagitta, nor beyond its ends.
+            let reach = from.distance(to) * 0.5 * self.bulge(corner).abs();
+            around[0] = around[0].min(from.min(to) - reach);
+            around[1] = around[1].max(from.max(to) + reach);
+        }
+        around
+    }
+
+    /// Identifies all that the partition is.
+    pub fn key(&self) -> Key {
+        let mut key = KeyHasher::new("partition", 1);
+        let bytes = postcard::to_stdvec(self).expect("plain data always has bytes");
+        key.bytes(&bytes).finish()
     }
 
     /// How much the edge behind a corner is bent; 0 if it is straight.

@@ -100,6 +100,8 @@ pub enum Type {
     Partition,
     /// A bundle of fields.
     Material,
+    /// A map from names to materials, each a link; a single link stands for a map of one.
+    Materials,
     /// Files to be written, maps or a table: what an output of a recipe is.
     Maps,
 }
@@ -107,7 +109,7 @@ pub enum Type {
 impl Type {
     /// Whether a recipe can write a value of this type as a literal.
     pub fn has_literals(self) -> bool {
-        !self.is_structure() && !matches!(self, Type::Material | Type::Maps)
+        !self.is_structure() && !matches!(self, Type::Material | Type::Materials | Type::Maps)
     }
 
     /// Whether values of this type are built once and cached, as opposed to wired or computed per point.
@@ -157,6 +159,7 @@ impl fmt::Display for Type {
             Type::Region => write!(formatter, "region"),
             Type::Partition => write!(formatter, "partition"),
             Type::Material => write!(formatter, "material"),
+            Type::Materials => write!(formatter, "map from names to materials"),
             Type::Maps => write!(formatter, "maps"),
         }
     }

@@ -54,7 +54,7 @@ fn add<'t>(references: &mut Vec<Reference<'t>>, value_type: Type, tree: &'t Tree
                 .iter()
                 .for_each(|tree| add(references, Type::Text, tree));
         }
-        (Type::Channels, Shape::Map(entries)) => {
+        (Type::Channels | Type::Materials, Shape::Map(entries)) => {
             for entry in entries {
                 add_channel(references, &entry.value);
             }

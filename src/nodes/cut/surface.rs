@@ -1,8 +1,9 @@
 //! What cuts along curved surfaces have in common: kernels that send points of the piece to the surface.
 
-use crate::field::{Block, Field, Kernel, Sampling};
+use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Inputs};
+use crate::nodes::average::Average;
 use crate::value::{Domain, Material, Surface, Value};
 use glam::{DVec2, DVec3};
 use std::fmt::Debug;
@@ -55,7 +56,7 @@ pub(super) fn piece(
     let position = spots.part(0, 3);
     let channels = solid.channels.iter();
     let channels = channels.map(|(name, field)| (name.clone(), field.at(&position)));
-    let coverage = build.kernel(Share, vec![spots.part(4, 1)]);
+    let coverage = build.kernel(Average { width: 1 }, vec![spots.part(4, 1)]);
     Ok(vec![Value::Material(Arc::new(Material {
         domain: Domain::Plane,
         channels: channels.chain([(COVERAGE.to_owned(), coverage)]).collect(),
@@ -130,27 +131,5 @@ impl Kernel for Tangents {
                 output[index] = value as f32;
             }
         }
-    }
-}
-
-/// The share of a pixel where a column of zeros and ones is one.
-#[derive(Debug)]
-struct Share;
-
-impl Kernel for Share {
-    fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("share").whole(1);
-    }
-
-    fn width(&self) -> usize {
-        1
-    }
-
-    fn sampling(&self) -> Sampling {
-        Sampling::Supersampled
-    }
-
-    fn evaluate(&self, block: &mut Block<'_>) {
-        block.outputs[0].copy_from_slice(block.inputs[0].values);
     }
 }

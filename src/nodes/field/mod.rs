@@ -6,7 +6,7 @@ pub mod image_from_file;
 pub mod math;
 pub(in crate::nodes) mod placement;
 pub mod position;
-mod profile;
+pub(in crate::nodes) mod profile;
 pub mod ramp;
 pub mod remap;
 pub mod sample_at;

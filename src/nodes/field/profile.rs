@@ -15,7 +15,7 @@ use crate::key::KeyHasher;
 
 /// What a profile does before its first and behind its last border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ends {
+pub(in crate::nodes) enum Ends {
     /// It keeps its first and its last value.
     Stay,
     /// It starts again.
@@ -24,11 +24,11 @@ pub(super) enum Ends {
 
 /// One piece: from `start` on, lane l is the cubic with the coefficients `cubic[l]` in x - start.
 #[derive(Clone, Debug)]
-pub(super) struct Piece<const LANES: usize> {
+pub(in crate::nodes) struct Piece<const LANES: usize> {
     /// Where the piece begins.
-    pub(super) start: f64,
+    pub(in crate::nodes) start: f64,
     /// Coefficients from the constant up.
-    pub(super) cubic: [[f64; 4]; LANES],
+    pub(in crate::nodes) cubic: [[f64; 4]; LANES],
 }
 
 /// A piece with the first and the second antiderivative of each lane at its start.
@@ -41,7 +41,7 @@ struct Summed<const LANES: usize> {
 
 /// A piecewise cubic function with `LANES` values.
 #[derive(Clone, Debug)]
-pub(super) struct Profile<const LANES: usize> {
+pub(in crate::nodes) struct Profile<const LANES: usize> {
     pieces: Vec<Summed<LANES>>,
     /// Where the first piece starts and the last one ends.
     range: [f64; 2],
@@ -61,7 +61,7 @@ const FARTHEST: f64 = 1e9;
 
 impl<const LANES: usize> Profile<LANES> {
     /// A profile of `pieces`, at least one, that rise strictly and of which the last ends at `end`.
-    pub(super) fn new(pieces: Vec<Piece<LANES>>, end: f64, ends: Ends) -> Profile<LANES> {
+    pub(in crate::nodes) fn new(pieces: Vec<Piece<LANES>>, end: f64, ends: Ends) -> Profile<LANES> {
         let range = [pieces[0].start, end];
         let mut profile = Profile {
             pieces: vec![],
@@ -104,7 +104,7 @@ impl<const LANES: usize> Profile<LANES> {
     }
 
     /// The mean over a sample in which the input is `middle` and changes by `across` and `along`.
-    pub(super) fn mean(&self, middle: f64, [across, along]: [f64; 2]) -> [f64; LANES] {
+    pub(in crate::nodes) fn mean(&self, middle: f64, [across, along]: [f64; 2]) -> [f64; LANES] {
         let period = self.range[1] - self.range[0];
         let bounded = |value: f64, limit: f64| if value < limit { value } else { limit };
         let wide = bounded(across.abs().max(along.abs()), FARTHEST * period);
@@ -177,7 +177,7 @@ impl<const LANES: usize> Profile<LANES> {
     }
 
     /// How far an input may bend within a sample before the mean is more than half of 1/255 off.
-    pub(super) fn sampling(&self) -> Sampling {
+    pub(in crate::nodes) fn sampling(&self) -> Sampling {
         let period = self.range[1] - self.range[0];
         let ends = self.pieces[1..].iter().map(|next| next.piece.start);
         let ends: Vec<f64> = ends.chain([self.range[1]]).collect();
@@ -209,7 +209,7 @@ impl<const LANES: usize> Profile<LANES> {
         }
     }
 
-    fn add_to_key(&self, key: &mut KeyHasher) {
+    pub(in crate::nodes) fn add_to_key(&self, key: &mut KeyHasher) {
         key.whole(LANES as i64)
             .whole(i64::from(self.ends == Ends::Repeat));
         key.number(self.range[0]).number(self.range[1]);
@@ -266,7 +266,7 @@ fn with_flat_ends<const LANES: usize>(pieces: Vec<Piece<LANES>>, end: f64) -> Ve
 }
 
 /// The cubic from `from` to `to` over `width` with the slopes at both ends (Hermite).
-pub(super) fn hermite(width: f64, from: f64, to: f64, slopes: [f64; 2]) -> [f64; 4] {
+pub(in crate::nodes) fn hermite(width: f64, from: f64, to: f64, slopes: [f64; 2]) -> [f64; 4] {
     let mean = (to - from) / width;
     let [start, end] = slopes;
     [
@@ -279,7 +279,7 @@ pub(super) fn hermite(width: f64, from: f64, to: f64, slopes: [f64; 2]) -> [f64;
 
 /// A kernel that gives a profile of its one input.
 #[derive(Debug)]
-pub(super) struct Along<const LANES: usize> {
+pub(in crate::nodes) struct Along<const LANES: usize> {
     /// The kind on whose behalf it runs, with its version.
     pub(super) kind: (&'static str, u32),
     /// The profile.

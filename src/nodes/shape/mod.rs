@@ -7,3 +7,4 @@ pub mod mesh_from_patches;
 pub mod nurbs_surface;
 pub mod patches_from_file;
 mod scan;
+pub mod subdivide;

@@ -14,7 +14,7 @@
 //!
 //! so the mask raises and lowers `b` by up to `reach`.
 
-mod channels;
+pub(super) mod channels;
 
 use super::mix::Mix;
 use crate::field::{Block, Field, Kernel};
@@ -84,7 +84,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let (a, b) = (inputs.material("a"), inputs.material("b"));
     let size = size(a, b)?;
     let share = share(inputs, build, a, b)?;
-    let pairs = channels::pairs(a, b, inputs)?;
+    let pairs = channels::pairs(a, b, ["a", "b"], inputs)?;
     let blended = |(name, [a, b]): (String, [Field; 2])| {
         let is_direction = Material::is_direction(&name, &a);
         let width = a.width();

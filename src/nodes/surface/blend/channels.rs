@@ -8,14 +8,15 @@ use crate::nodes::surface::material::default_of;
 use crate::value::Material;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The fields of every channel that one of the materials has, in `a` and in `b`.
+/// The fields of every channel that one of the materials has, in `a` and in `b`, which `inputs_of` names.
 ///
 /// # Errors
 /// Channels that are numbers in one and colours in the other; values of `missing` for channels that neither has, that
 /// both have, or of the wrong type.
-pub(super) fn pairs(
+pub(in crate::nodes::surface) fn pairs(
     a: &Material,
     b: &Material,
+    inputs_of: [&str; 2],
     inputs: &Inputs<'_>,
 ) -> Result<BTreeMap<String, [Field; 2]>, Failure> {
     let names: BTreeSet<&String> = a.channels.keys().chain(b.channels.keys()).collect();
@@ -30,7 +31,8 @@ pub(super) fn pairs(
         let pair = [or_default(of_a), or_default(of_b)];
         if pair[0].width() != pair[1].width() {
             let [a, b] = [&pair[0], &pair[1]].map(described);
-            let message = format!("the channel `{name}` is {a} in `a` and {b} in `b`");
+            let [of_a, of_b] = inputs_of;
+            let message = format!("the channel `{name}` is {a} in `{of_a}` and {b} in `{of_b}`");
             let hint = "make both alike, or give one of them another name";
             return Err(Failure::new(message).with_hint(hint));
         }
@@ -82,7 +84,7 @@ fn stated(
 
 /// Blends unit vectors without sign. Columns in: three of `a`, three of `b`, share of `b`.
 #[derive(Debug)]
-pub(super) struct Axes;
+pub(in crate::nodes::surface) struct Axes;
 
 impl Kernel for Axes {
     fn add_to_key(&self, key: &mut KeyHasher) {

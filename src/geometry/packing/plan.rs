@@ -1,0 +1,256 @@
+//! From what is asked for to cells: the order of the steps.
+
+use super::cells::{Bed, cells};
+use super::force::{Force, Law};
+use super::guide::Guide;
+use super::lattice::Lattice;
+use super::mend::mend;
+use super::position::{Field, stones};
+use super::relax::Relaxation;
+use super::settle::Dynamics;
+use super::start::{Ground, Start};
+use super::walls::Walls;
+use super::Stone;
+use crate::value::{Partition, Region};
+use glam::DVec2;
+
+/// How stones find their places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Method {
+    /// Particles that push and pull each other.
+    Particles {
+        /// How the cubics act.
+        law: Law,
+        /// Where particles begin.
+        start: Start,
+        /// Largest number of steps.
+        steps: usize,
+    },
+    /// Lattice points that a field agrees on.
+    PositionField,
+}
+
+/// What is to be packed.
+pub(crate) struct Plan<'a> {
+    pub(crate) region: &'a Region,
+    /// Width and height of a bed that repeats; the region is that rectangle then.
+    pub(crate) period: Option<DVec2>,
+    /// Length and width of a stone of size 1, in mm: of pentagons and hexagons the distance to their neighbours.
+    pub(crate) stone: DVec2,
+    /// 4, 5 or 6.
+    pub(crate) corners: u32,
+    /// Smallest and largest random size.
+    pub(crate) spread: [f64; 2],
+    /// How far each row is moved against the one before, in stones.
+    pub(crate) bond: f64,
+    pub(crate) method: Method,
+    /// Whether empty places are filled and crowded ones thinned out.
+    pub(crate) mends: bool,
+    /// Direction and size at every place.
+    pub(crate) guide: &'a Guide,
+    /// In how many parts of a turn a stone looks the same.
+    pub(crate) symmetry: u32,
+}
+
+/// Rounds of mending.
+const MENDED: usize = 3;
+
+/// Distance of the stones of a Cairo tiling from the corners of its squares, over the squares' side, and the side over
+/// the distance of neighbouring stones.
+const CAIRO: f64 = 0.183_012_701_892_219_3;
+const CAIRO_SIDE: f64 = 1.931_851_652_578_136_6;
+
+/// The cells of packed stones, with the attributes `size` (mm), `aspect` and `corners`. `random` gives numbers from 0 to
+/// less than 1; `go_on` hears the share that is done.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn pack<E>(
+    plan: &Plan<'_>,
+    random: &mut dyn FnMut() -> f64,
+    go_on: &mut dyn FnMut(f64) -> Result<(), E>,
+) -> Result<Partition, E> {
+    let least = plan.guide.least();
+    let largest = plan.guide.largest() * plan.spread[1];
+    let walls = Walls::new(plan.region, 2.0 * largest * plan.stone.max_element());
+    let [low, high] = walls.bounds();
+    let ground = Ground {
+        region: plan.region,
+        walls: &walls,
+        guide: plan.guide,
+        stone: plan.stone,
+        spread: plan.spread,
+        least,
+    };
+    let bed = Bed {
+        region: plan.region,
+        walls: plan.period.is_none().then_some(&walls),
+        bounds: [low, high - low],
+        period: plan.period,
+        stone: plan.stone,
+        corners: plan.corners,
+    };
+    let mut packed = match plan.method {
+        Method::Particles { law, start, steps } => {
+            plan.particles(&ground, Force::new(plan.corners, law), start, steps, random, go_on)?
+        }
+        Method::PositionField => plan.lattice_points(&ground, &bed, random, go_on)?,
+    };
+    let relaxation = plan.relaxation(&bed);
+    if plan.method == Method::PositionField && plan.corners != 5 {
+        relaxation.relax(&mut packed, &mut |share| go_on(0.5 + 0.2 * share))?;
+    }
+    let mut partition = cells(&bed, &packed);
+    for _ in 0..MENDED {
+        if !plan.mends || !mend(&ground, &partition, &mut packed, random) {
+            break;
+        }
+        go_on(0.8)?;
+        relaxation.relax(&mut packed, &mut |_| go_on(0.8))?;
+        partition = cells(&bed, &packed);
+    }
+    plan.describe(&mut partition, &packed);
+    Ok(partition)
+}
+
+impl Plan<'_> {
+    /// Particles on the border and inside, settled.
+    fn particles<E>(
+        &self,
+        ground: &Ground<'_>,
+        force: Force,
+        start: Start,
+        steps: usize,
+        random: &mut dyn FnMut() -> f64,
+        go_on: &mut dyn FnMut(f64) -> Result<(), E>,
+    ) -> Result<Vec<Stone>, E> {
+        let border = match self.period {
+            None => ground.border(random),
+            Some(_) => vec![],
+        };
+        let inside = ground.inside(&border, start, random);
+        let mut stones = [border, inside].concat();
+        let dynamics = Dynamics {
+            force,
+            stone: self.stone,
+            guide: self.guide,
+            symmetry: self.symmetry,
+            period: self.period,
+            steps,
+        };
+        dynamics.settle(&mut stones, &mut |share| go_on(0.8 * share))?;
+        if self.period.is_none() {
+            stones.retain(|stone| stone.is_fixed || ground.walls.contains(stone.point));
+        }
+        Ok(stones)
+    }
+
+    /// Stones at the points of a lattice that follows the guide.
+    fn lattice_points<E>(
+        &self,
+        ground: &Ground<'_>,
+        bed: &Bed<'_>,
+        random: &mut dyn FnMut() -> f64,
+        go_on: &mut dyn FnMut(f64) -> Result<(), E>,
+    ) -> Result<Vec<Stone>, E> {
+        let field = Field {
+            lattice: self.lattice(),
+            guide: self.guide,
+            walls: bed.walls,
+            bounds: bed.bounds,
+            period: self.period,
+            least: ground.least,
+            first: 0.5 * self.stone.y,
+            symmetry: self.symmetry,
+        };
+        let mut round = 0.0;
+        let level = field.solve(&mut || {
+            round += 1.0;
+            go_on(0.5 * round / (round + 20.0))
+        })?;
+        let mut points: Vec<DVec2> = stones(&field, &level).into_iter().map(|stone| stone.0).collect();
+        if self.corners == 5 {
+            points = self.pentagons(&points);
+        }
+        let is_free = |point: &DVec2| {
+            let width = self.stone.min_element() * self.guide.at(*point).scale;
+            let nearest = ground.walls.nearest(*point);
+            ground.walls.contains(*point) && nearest.is_none_or(|foot| foot.distance > 0.22 * width)
+        };
+        if self.period.is_none() {
+            points.retain(is_free);
+        }
+        let stones = points.into_iter().map(|point| ground.stone_at(point, random()));
+        Ok(ground.apart(stones.collect(), 0.55))
+    }
+
+    /// The lattice that stones of this shape lie on; in a bed that repeats it fits its sides.
+    fn lattice(&self) -> Lattice {
+        let mean = 0.5 * (self.spread[0] + self.spread[1]);
+        let (step, shift) = match self.corners {
+            5 => (DVec2::splat(CAIRO_SIDE) * self.stone, 0.0),
+            6 => (self.stone * DVec2::new(1.0, 0.75_f64.sqrt()), 0.5),
+            _ => (self.stone, self.bond),
+        };
+        let step = mean * step;
+        let Some(period) = self.period else {
+            return Lattice { step, shift };
+        };
+        let every = DVec2::new(1.0, if shift == 0.0 { 1.0 } else { 2.0 });
+        let count = (period / (step * every)).round().max(DVec2::ONE) * every;
+        Lattice { step: period / count, shift }
+    }
+
+    /// The stones of a Cairo tiling around the corners of its squares.
+    fn pentagons(&self, corners: &[DVec2]) -> Vec<DVec2> {
+        let side = self.lattice().step;
+        let places = [
+            (CAIRO - 0.5, CAIRO),
+            (0.5 - CAIRO, -CAIRO),
+            (-CAIRO, CAIRO - 0.5),
+            (CAIRO, 0.5 - CAIRO),
+        ];
+        let around = |corner: &DVec2| {
+            let wish = self.guide.at(*corner);
+            let corner = *corner;
+            places.map(move |place| corner + wish.frame.rotate(DVec2::from(place) * side * wish.scale))
+        };
+        corners.iter().flat_map(around).collect()
+    }
+
+    fn relaxation<'b>(&'b self, bed: &Bed<'b>) -> Relaxation<'b> {
+        Relaxation {
+            guide: self.guide,
+            walls: bed.walls,
+            symmetry: self.symmetry,
+            period: self.period,
+            stone: self.stone,
+            sides: self.corners,
+            is_aligned: self.corners == 4 && self.bond == 0.0,
+        }
+    }
+
+    /// Turns the frames of cells to the cells themselves, and says how large their stones are meant to be.
+    fn describe(&self, partition: &mut Partition, stones: &[Stone]) {
+        let edges = if self.corners == 6 { 6 } else { 4 };
+        let axes: Vec<DVec2> = (0..partition.len())
+            .map(|cell| {
+                let wished = partition.frames[cell];
+                let own = super::statistics::axis(partition.outline(cell), edges);
+                own.map_or(wished, |own| super::guide::nearest_turn(own, wished, edges))
+            })
+            .collect();
+        partition.frames = axes;
+        let width = self.stone.min_element();
+        let size = |id: &u32| {
+            let stone = stones.get(*id as usize);
+            width * stone.map_or(1.0, |stone| stone.scale)
+        };
+        let sizes = partition.ids.iter().map(size).collect();
+        let count = partition.len();
+        let mut set = |name: &str, numbers: Vec<f64>| partition.attributes.insert(name.to_owned(), numbers);
+        set("size", sizes);
+        set("aspect", vec![self.stone.x / self.stone.y; count]);
+        set("corners", vec![f64::from(self.corners); count]);
+    }
+}

@@ -1,0 +1,3 @@
+//! Stones: what is built of cells.
+
+pub mod stones;

@@ -1,0 +1,207 @@
+//! `stones`: a stone on every cell of a partition, as relief and colours of a flat piece.
+//!
+//! A stone is a prism over its cell, narrower by the joint, whose top corners are moved by chance; `round` and `corner`
+//! stones are what Loop subdivision makes of it (fig. 7 and 8 of the paper). A `sett` is dressed flat, with a rim that is
+//! a quarter of a circle.
+//!
+//! At each point the stones near it are asked for their height, and the highest counts: stones are never drawn into a
+//! picture. Rims are supersampled, and so are borders of colours.
+
+mod cage;
+mod form;
+mod grid;
+mod ground;
+mod kernels;
+mod laying;
+mod optics;
+mod outline;
+#[cfg(test)]
+mod tests;
+
+use crate::field::Field;
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::value::{Domain, Type, Unit, Value};
+use kernels::{Find, OfStone, Relief, Show, Shown};
+use laying::{Laid, lay};
+use optics::OPTICS;
+
+/// Stones on the cells of a partition.
+pub static KIND: Kind = Kind {
+    name: "stones",
+    version: 1,
+    about: "A stone on every cell: prisms, round stones, stones with corners or dressed setts, each a little different, \
+            let into a bed that fills the joints.",
+    source: "Miyata, Itoh & Shimada 2000 (section 4); Loop 1987; setts, tilt, wear and chips: own construction",
+    inputs: INPUTS,
+    outputs: &[
+        Output::field(
+            "height",
+            Type::Number(Unit::Millimetre),
+            "Height of what is seen, stone or bed, above the base.",
+        )
+        .on(Domain::Plane),
+        Output::field(
+            "mask",
+            Type::Number(Unit::One),
+            "1 where a stone is seen, 0 where the bed is.",
+        )
+        .on(Domain::Plane),
+        Output::field(
+            "colour",
+            Type::Colour,
+            "Colour of the stone; in joints that of the nearest.",
+        )
+        .on(Domain::Plane),
+        Output::field(
+            "roughness",
+            Type::Number(Unit::One),
+            "Roughness of the stone.",
+        )
+        .on(Domain::Plane),
+        Output::field(
+            "optical_index",
+            Type::Number(Unit::One),
+            "Which record of `optics` the stone has, from 0 on; not averaged.",
+        )
+        .on(Domain::Plane),
+        Output::field(
+            "specular",
+            Type::Number(Unit::One),
+            "Strength of Phong's highlight.",
+        )
+        .on(Domain::Plane),
+        Output::field("exponent", Type::Number(Unit::One), "Phong's exponent.").on(Domain::Plane),
+        Output::field(
+            "stone",
+            Type::Number(Unit::One),
+            "1 more than the id of the cell whose stone is seen, 0 where the bed is; not averaged.",
+        )
+        .on(Domain::Plane),
+        Output::field(
+            "random",
+            Type::Number(Unit::One),
+            "A number from 0 to 1 for each stone.",
+        )
+        .on(Domain::Plane),
+        Output::field(
+            "edge",
+            Type::Number(Unit::Millimetre),
+            "How far inside the stone's outline the point is; below 0 in joints.",
+        )
+        .on(Domain::Plane),
+        Output::field(
+            "tilt",
+            Type::Number(Unit::Degree),
+            "How far the stone's top leans.",
+        )
+        .on(Domain::Plane),
+    ],
+    example: r##"(nodes: {
+        "cells": voronoi_split(size: (1000, 1000), seeds: 150),
+        "example": stones(of: "cells", height: 60, bed: 45, optics: [(colour: "#91968f"), (colour: "#7a7e78", weight: 2)]),
+    })"##,
+    build,
+};
+
+const INPUTS: &[Input] = &[
+    Input::new("of", Type::Partition, "The cells."),
+    Input::new(
+        "stone",
+        Type::Choice(&["sett", "prism", "round", "corner"]),
+        "sett: dressed, flat with a round rim; prism: with sharp edges; round: rounded all over; corner: rounded, with corners.",
+    )
+    .default("sett"),
+    Input::number("height", Unit::Millimetre, "Height of the stones above the base.").default("100").range(1e-3, 1e5),
+    Input::number("unevenness", Unit::Millimetre, "Standard deviation of the stones' heights.").default("1.5").range(0.0, 1e4),
+    Input::number("deformation", Unit::Millimetre, "How far the corners of the top are moved at most, along x, y and z.")
+        .default("2")
+        .range(0.0, 1e4),
+    Input::number("joint", Unit::Millimetre, "Width of the joints.").default("8").range(0.0, 1e4),
+    Input::number("joint_variation", Unit::One, "Standard deviation of the joints' width, relative to it.")
+        .default("0.2")
+        .range(0.0, 0.5),
+    Input::number("rounding", Unit::Millimetre, "Of setts: radius of the rim.").default("6").range(0.0, 1e4),
+    Input::number("corner_radius", Unit::Millimetre, "Of setts: radius of the corners, seen from above.").default("8").range(0.0, 1e4),
+    Input::number("crown", Unit::Millimetre, "Of setts: how far the middle stands above the rim.").default("1").range(-1e3, 1e3),
+    Input::number("corner_ratio", Unit::One, "Of stones with corners: how far along the edges the vertices are that hold them.")
+        .default("0.2")
+        .range(0.01, 0.45),
+    Input::number("swell", Unit::One, "Of round stones and those with corners: 0 leaves them as small as subdivision makes them, 1 lets them fill cell and height.")
+        .default("0")
+        .range(0.0, 1.0),
+    Input::number("tilt", Unit::Degree, "Standard deviation of the angle at which the stones lie, along x and along y.").default("1").range(0.0, 30.0),
+    Input::number("settle", Unit::Millimetre, "How far the ground has risen or sunk: stones move and lean with it.")
+        .per_point()
+        .of(Domain::Plane)
+        .default("0"),
+    Input::number("wear", Unit::One, "How far feet and wheels have worn the stones: 0 not at all, 1 flat.")
+        .per_point()
+        .of(Domain::Plane)
+        .default("0")
+        .range(0.0, 1.0),
+    Input::number("bed", Unit::Millimetre, "Height of what fills the joints above the base.").per_point().of(Domain::Plane).default("0"),
+    Input::number("chips", Unit::Millimetre, "How far from its edge the stone is chipped.").per_point().of(Domain::Plane).default("0"),
+    Input::new("optics", Type::List(&Type::Record(OPTICS)), "What stones look like: each gets one of these by chance.")
+        .default("[(colour: \"#868b86\")]"),
+    Input::new("seed", Type::Whole, "Another number gives other stones; so does the recipe's seed.").default("0"),
+];
+
+fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let table = optics::read(inputs)?;
+    let laid = lay(inputs, build, &table)?;
+    let (means, numbers) = columns(&laid, &table);
+    let find = Find {
+        key: laid.ground.key(),
+        ground: laid.ground,
+    };
+    let found = build.kernel(find, vec![Field::position(Domain::Plane)]);
+    let [bed, chips] = ["bed", "chips"].map(|name| inputs.field(name));
+    let shown = build.kernel(Show, vec![found.clone(), bed, chips]);
+    let relief = build.kernel(Relief, vec![shown.clone()]);
+    let means = build.kernel(OfStone::new(means, true), vec![found.part(3, 1)]);
+    let numbers = build.kernel(OfStone::new(numbers, false), vec![found.part(3, 1)]);
+    let id = build.kernel(Shown, vec![shown.part(1, 1), numbers.part(1, 1)]);
+    let fields = [
+        relief.part(0, 1),
+        relief.part(1, 1),
+        means.part(0, 3),
+        means.part(3, 1),
+        numbers.part(0, 1),
+        means.part(4, 1),
+        means.part(5, 1),
+        id,
+        means.part(6, 1),
+        relief.part(2, 1),
+        means.part(7, 1),
+    ];
+    Ok(fields.map(Value::Field).to_vec())
+}
+
+/// What is averaged over pixels of each stone, and what is not; behind the stones what counts where there is none.
+fn columns(laid: &Laid, table: &[optics::Optics]) -> (Vec<Vec<f32>>, Vec<Vec<f32>>) {
+    let column = |value: &dyn Fn(usize) -> f64, none: f64| -> Vec<f32> {
+        let stones = (0..laid.records.len()).map(value);
+        stones.chain([none]).map(|value| value as f32).collect()
+    };
+    let of_record = |value: &dyn Fn(&optics::Optics) -> f64| {
+        column(
+            &|stone| value(&table[laid.records[stone]]),
+            value(&table[0]),
+        )
+    };
+    let means = vec![
+        of_record(&|record| record.colour[0]),
+        of_record(&|record| record.colour[1]),
+        of_record(&|record| record.colour[2]),
+        of_record(&|record| record.roughness),
+        of_record(&|record| record.specular),
+        of_record(&|record| record.exponent),
+        column(&|stone| laid.shares[stone], 0.0),
+        column(&|stone| laid.tilts[stone], 0.0),
+    ];
+    let numbers = vec![
+        column(&|stone| laid.records[stone] as f64, 0.0),
+        column(&|stone| f64::from(laid.ids[stone]) + 1.0, 0.0),
+    ];
+    (means, numbers)
+}

@@ -1,0 +1,380 @@
+//! How stones are laid: from cells to outlines, prisms and places in the ground, each by its own random numbers.
+
+use super::KIND;
+use super::cage::{Cage, Cut};
+use super::grid::Grid;
+use super::ground::{FORMS, Ground, Stone};
+use super::optics::{Optics, pick};
+use super::outline::{self, Segment};
+use crate::node::{Build, Failure, Inputs};
+use crate::nodes::random::Random;
+use crate::value::Partition;
+use glam::{DVec2, DVec3, Vec2};
+use std::collections::BTreeMap;
+
+/// All stones, and lists of what else is known of each.
+pub(super) struct Laid {
+    pub(super) ground: Ground,
+    /// The record of the table.
+    pub(super) records: Vec<usize>,
+    /// The id of the cell.
+    pub(super) ids: Vec<u32>,
+    /// A random number from 0 to 1.
+    pub(super) shares: Vec<f64>,
+    /// How far the top leans, in degrees.
+    pub(super) tilts: Vec<f64>,
+}
+
+/// Numbers that hold for all stones, in mm and radians.
+struct Manner {
+    /// `None` for setts.
+    cut: Option<Cut>,
+    height: f64,
+    unevenness: f64,
+    deformation: f64,
+    joint: f64,
+    joint_variation: f64,
+    rounding: f64,
+    corner_radius: f64,
+    crown: f64,
+    swell: f64,
+    tilt: f64,
+}
+
+impl Manner {
+    fn read(inputs: &Inputs<'_>) -> Manner {
+        let cut = match inputs.choice("stone") {
+            "prism" => Some(Cut::Prism),
+            "round" => Some(Cut::Round),
+            "corner" => Some(Cut::Corner(inputs.number("corner_ratio"))),
+            _ => None,
+        };
+        Manner {
+            cut,
+            height: inputs.number("height"),
+            unevenness: inputs.number("unevenness"),
+            deformation: inputs.number("deformation"),
+            joint: inputs.number("joint"),
+            joint_variation: inputs.number("joint_variation"),
+            rounding: inputs.number("rounding"),
+            corner_radius: inputs.number("corner_radius"),
+            crown: inputs.number("crown"),
+            swell: inputs.number("swell"),
+            tilt: inputs.number("tilt").to_radians(),
+        }
+    }
+}
+
+/// Stones between two questions whether to go on.
+const AT_ONCE: usize = 4096;
+
+/// Lays the stones.
+///
+/// # Errors
+/// If the joints leave nothing of any cell, or the run was cancelled.
+pub(super) fn lay(
+    inputs: &Inputs<'_>,
+    build: &Build<'_>,
+    table: &[Optics],
+) -> Result<Laid, Failure> {
+    let partition = inputs.partition("of");
+    let manner = Manner::read(inputs);
+    let grounds = Grounds::sample(inputs, build, partition)?;
+    let seed = stream(build.seed, inputs.whole("seed"));
+    let mut laying = Laying {
+        manner,
+        cages: BTreeMap::new(),
+        stones: vec![],
+        segments: vec![],
+        corners: vec![],
+    };
+    let (mut records, mut ids, mut shares, mut tilts) = (vec![], vec![], vec![], vec![]);
+    for cell in 0..partition.len() {
+        if cell % AT_ONCE == 0 {
+            build.go_on()?;
+        }
+        let mut random = Random::new(seed, "stone", i64::from(partition.ids[cell]));
+        let [share, record] = [(); 2].map(|()| f64::from(random.share()));
+        let at = grounds.of_cell(cell);
+        if laying.add(partition, cell, &at, &mut random) {
+            records.push(pick(table, record));
+            ids.push(partition.ids[cell]);
+            shares.push(share);
+            tilts.push(laying.tilt_of_last());
+        }
+    }
+    if laying.stones.is_empty() {
+        let failure = Failure::of_input("joint", "the joints leave nothing of any cell");
+        return Err(failure.with_hint("make them narrower than half of a cell"));
+    }
+    let ground = laying.finish(partition.period);
+    Ok(Laid {
+        ground,
+        records,
+        ids,
+        shares,
+        tilts,
+    })
+}
+
+/// The seed of the stones' own streams.
+fn stream(recipe_seed: u64, node_seed: i64) -> u64 {
+    let mut random = Random::new(recipe_seed, KIND.name, node_seed);
+    let [high, low] = [(); 2].map(|()| u64::from(random.bits()));
+    high << 32 | low
+}
+
+/// What fields say of the ground at each cell.
+struct Grounds {
+    /// Settlement in the middle and a quarter of the cell's size right, above, left and below of it.
+    settled: Vec<f32>,
+    quarters: Vec<f64>,
+    wear: Vec<f32>,
+}
+
+/// What fields say of the ground at one cell.
+struct At {
+    settled: f64,
+    slope: DVec2,
+    wear: f64,
+}
+
+impl Grounds {
+    fn sample(
+        inputs: &Inputs<'_>,
+        build: &Build<'_>,
+        partition: &Partition,
+    ) -> Result<Grounds, Failure> {
+        let quarters: Vec<f64> = partition
+            .areas
+            .iter()
+            .map(|area| 0.25 * area.abs().sqrt().max(1e-6))
+            .collect();
+        let around = partition
+            .centres
+            .iter()
+            .zip(&quarters)
+            .flat_map(|(centre, quarter)| {
+                [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y]
+                    .map(|way| *centre + way * *quarter)
+            });
+        let mut settled = build.sample(&inputs.field("settle"), &around.collect::<Vec<_>>())?;
+        let mut wear = build.sample(&inputs.field("wear"), &partition.centres)?;
+        Ok(Grounds {
+            settled: settled.swap_remove(0),
+            quarters,
+            wear: wear.swap_remove(0),
+        })
+    }
+
+    fn of_cell(&self, cell: usize) -> At {
+        let [middle, right, above, left, below] =
+            [0, 1, 2, 3, 4].map(|index| f64::from(self.settled[5 * cell + index]));
+        At {
+            settled: middle,
+            slope: DVec2::new(right - left, above - below) / (2.0 * self.quarters[cell]),
+            wear: f64::from(self.wear[cell]).clamp(0.0, 1.0),
+        }
+    }
+}
+
+/// Stones while they are laid.
+struct Laying {
+    manner: Manner,
+    cages: BTreeMap<usize, Cage>,
+    stones: Vec<Stone>,
+    segments: Vec<Segment>,
+    corners: Vec<DVec3>,
+}
+
+impl Laying {
+    /// Lays the stone of a cell; says whether there is room for one.
+    fn add(&mut self, partition: &Partition, cell: usize, at: &At, random: &mut Random) -> bool {
+        let manner = &self.manner;
+        let mut by =
+            || 0.5 * manner.joint * (1.0 + manner.joint_variation * normal(random)).max(0.1);
+        let Some(base) = outline::inset(&outline::of_cell(partition, cell), &mut by) else {
+            return false;
+        };
+        let top = at.settled + manner.height + manner.unevenness * normal(random);
+        let lean = [(); 2].map(|()| libm::tan(manner.tilt * normal(random)));
+        let moved: Vec<DVec3> = base
+            .iter()
+            .map(|_| {
+                DVec3::from_array(
+                    [(); 3].map(|()| manner.deformation * (2.0 * f64::from(random.share()) - 1.0)),
+                )
+            })
+            .collect();
+        let mut stone = Stone {
+            centre: partition.centres[cell],
+            low: Vec2::ZERO,
+            high: Vec2::ZERO,
+            segments: 0..0,
+            corners: 0..0,
+            top: top as f32,
+            slope: (at.slope + DVec2::from_array(lean)).as_vec2(),
+            rim: 0.0,
+            crown: 0.0,
+            half: 0.0,
+            worn: None,
+        };
+        match self.manner.cut {
+            None => self.dress(&mut stone, &base, &moved, at, random),
+            Some(cut) => self.cut(&mut stone, &base, &moved, at, cut),
+        }
+        self.stones.push(stone);
+        true
+    }
+
+    /// Makes it a sett.
+    fn dress(
+        &mut self,
+        stone: &mut Stone,
+        base: &[DVec2],
+        moved: &[DVec3],
+        at: &At,
+        random: &mut Random,
+    ) {
+        let manner = &self.manner;
+        let corners: Vec<DVec2> = base
+            .iter()
+            .zip(moved)
+            .map(|(corner, by)| *corner + by.truncate())
+            .collect();
+        stone.slope += plane(base, moved).as_vec2();
+        let by_chance = 0.7 + 0.6 * f64::from(random.share());
+        stone.rim = (manner.rounding * by_chance * (1.0 + at.wear)) as f32;
+        stone.crown = (manner.crown * (1.0 - at.wear)) as f32;
+        let radius = corners
+            .iter()
+            .map(|corner| corner.length_squared())
+            .fold(0.0, f64::max);
+        stone.half = (1.0 / radius.max(1e-12)) as f32;
+        self.outline(
+            stone,
+            &outline::rounded(&corners, manner.corner_radius * by_chance),
+        );
+    }
+
+    /// Makes it a prism, or what is cut of one.
+    fn cut(&mut self, stone: &mut Stone, base: &[DVec2], moved: &[DVec3], at: &At, cut: Cut) {
+        let top = f64::from(stone.top);
+        let below = base.iter().map(|corner| corner.extend(0.0));
+        let above = base
+            .iter()
+            .zip(moved)
+            .map(|(corner, by)| corner.extend(top) + *by);
+        let mut corners: Vec<DVec3> = below.chain(above).collect();
+        let cage = self
+            .cages
+            .entry(base.len())
+            .or_insert_with(|| Cage::new(base.len(), cut));
+        if cut != Cut::Prism && self.manner.swell > 0.0 {
+            swell(cage, &mut corners, base, self.manner.swell);
+        }
+        if at.wear > 0.0 {
+            // The middle of the top is the vertex behind the corners.
+            let highest = Cage::blend(&cage.vertices[corners.len()], &corners).z;
+            let depth = 0.1 * top.abs() * at.wear;
+            stone.worn = Some([(highest - depth) as f32, depth as f32]);
+        }
+        let first = self.corners.len() as u32;
+        self.corners.extend(corners.iter().copied());
+        stone.corners = first..self.corners.len() as u32;
+        self.outline(stone, base);
+        for corner in corners {
+            stone.low = stone.low.min(corner.truncate().as_vec2());
+            stone.high = stone.high.max(corner.truncate().as_vec2());
+        }
+    }
+
+    /// Gives the stone its outline, and the box around it.
+    fn outline(&mut self, stone: &mut Stone, corners: &[DVec2]) {
+        let first = self.segments.len() as u32;
+        self.segments.extend(outline::segments(corners));
+        stone.segments = first..self.segments.len() as u32;
+        let flat = || corners.iter().map(|corner| corner.as_vec2());
+        stone.low = flat().fold(Vec2::INFINITY, Vec2::min);
+        stone.high = flat().fold(Vec2::NEG_INFINITY, Vec2::max);
+    }
+
+    fn tilt_of_last(&self) -> f64 {
+        let slope = self.stones.last().map_or(0.0, |stone| stone.slope.length());
+        libm::atan(f64::from(slope)).to_degrees()
+    }
+
+    fn finish(self, period: Option<DVec2>) -> Ground {
+        let reach = 0.75 * self.manner.joint + 4.0;
+        let kept = self.stones.len().min(FORMS);
+        Ground {
+            grid: Grid::new(&self.stones, reach, period),
+            forms: std::iter::repeat_with(Default::default)
+                .take(kept)
+                .collect(),
+            stones: self.stones,
+            segments: self.segments,
+            corners: self.corners,
+            cages: self.cages,
+        }
+    }
+}
+
+/// A normal deviate of at most 3 (Box & Muller 1958).
+fn normal(random: &mut Random) -> f64 {
+    let [one, other] = [(); 2].map(|()| f64::from(random.share()));
+    let size = (-2.0 * libm::log(1.0 - one)).sqrt();
+    (size * libm::cos(std::f64::consts::TAU * other)).clamp(-3.0, 3.0)
+}
+
+/// The slopes of the plane that comes nearest to corners that are moved up and down.
+fn plane(base: &[DVec2], moved: &[DVec3]) -> DVec2 {
+    let pairs = || base.iter().zip(moved.iter().map(|by| by.z));
+    let count = base.len() as f64;
+    let middle = base.iter().sum::<DVec2>() / count;
+    let mean = pairs().map(|(_, z)| z).sum::<f64>() / count;
+    let (mut xx, mut xy, mut yy, mut z) = (0.0, 0.0, 0.0, DVec2::ZERO);
+    for (corner, height) in pairs() {
+        let from = *corner - middle;
+        (xx, xy, yy) = (
+            xx + from.x * from.x,
+            xy + from.x * from.y,
+            yy + from.y * from.y,
+        );
+        z += from * (height - mean);
+    }
+    let determinant = xx * yy - xy * xy;
+    match determinant > 1e-9 * (xx + yy) * (xx + yy) {
+        true => DVec2::new(yy * z.x - xy * z.y, xx * z.y - xy * z.x) / determinant,
+        false => DVec2::ZERO,
+    }
+}
+
+/// Enlarges a prism so that what is cut of it fills its cell and its height, or part of the way there.
+fn swell(cage: &Cage, corners: &mut [DVec3], base: &[DVec2], share: f64) {
+    let points: Vec<DVec3> = cage
+        .vertices
+        .iter()
+        .map(|it| Cage::blend(it, corners))
+        .collect();
+    let mut scale = f64::INFINITY;
+    for (index, from) in base.iter().enumerate() {
+        let outwards = -(base[(index + 1) % base.len()] - *from)
+            .normalize_or_zero()
+            .perp();
+        let support = points
+            .iter()
+            .map(|point| point.truncate().dot(outwards))
+            .fold(0.0, f64::max);
+        if support > 0.0 {
+            scale = scale.min(from.dot(outwards) / support);
+        }
+    }
+    let high = points.iter().map(|point| point.z).fold(0.0, f64::max);
+    let top = corners.iter().map(|corner| corner.z).fold(0.0, f64::max);
+    let grown = |scale: f64| 1.0 + (scale.clamp(1.0, 3.0) - 1.0) * share;
+    let (flat, up) = (grown(scale), grown(top / high.max(1e-9)));
+    for corner in corners {
+        *corner = DVec3::new(flat * corner.x, flat * corner.y, up * corner.z);
+    }
+}

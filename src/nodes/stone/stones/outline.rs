@@ -1,0 +1,208 @@
+//! Outlines of stones: from cells, narrower by the joint, with rounded corners; and how far a point is from one.
+
+use crate::value::Partition;
+use glam::{DVec2, Vec2};
+
+/// Arcs are drawn with a corner at least every so many radians.
+const ARC: f64 = 0.3;
+
+/// The corners of a cell around its centre, counterclockwise: arcs as short edges, and no corner within a straight edge.
+pub(super) fn of_cell(partition: &Partition, cell: usize) -> Vec<DVec2> {
+    let Some(ring) = partition.rings_of(cell).next() else {
+        return vec![];
+    };
+    let centre = partition.centres[cell];
+    let mut corners = vec![];
+    for corner in ring.clone() {
+        let next = if corner + 1 < ring.end {
+            corner + 1
+        } else {
+            ring.start
+        };
+        let [from, to] = [corner, next].map(|index| partition.corners[index] - centre);
+        add_arc(&mut corners, from, to, partition.bulge(corner));
+    }
+    without_straight_corners(corners)
+}
+
+/// Adds the points of an edge without its end.
+fn add_arc(corners: &mut Vec<DVec2>, from: DVec2, to: DVec2, bulge: f64) {
+    let angle = 4.0 * libm::atan(bulge);
+    let steps = (angle.abs() / ARC).ceil().max(1.0);
+    corners.push(from);
+    if bulge == 0.0 {
+        return;
+    }
+    // The centre lies on the perpendicular of the chord's middle.
+    let chord = to - from;
+    let centre = 0.5 * (from + to) + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
+    for step in 1..steps as usize {
+        let (sine, cosine) = libm::sincos(angle * step as f64 / steps);
+        corners.push(centre + DVec2::new(cosine, sine).rotate(from - centre));
+    }
+}
+
+/// Drops corners that lie on the line between their neighbours, where cells meet the middle of an edge.
+fn without_straight_corners(mut corners: Vec<DVec2>) -> Vec<DVec2> {
+    let is_corner = |before: DVec2, here: DVec2, after: DVec2| {
+        let (one, other) = (here - before, after - here);
+        one.perp_dot(other).abs() > 1e-6 * (one.length_squared() + other.length_squared())
+    };
+    let mut index = 0;
+    while index < corners.len() && corners.len() > 2 {
+        let count = corners.len();
+        let [before, after] = [count - 1, 1].map(|step| corners[(index + step) % count]);
+        match is_corner(before, corners[index], after) {
+            true => index += 1,
+            false => {
+                corners.remove(index);
+                index = index.saturating_sub(1);
+            }
+        }
+    }
+    corners
+}
+
+/// Twice the area.
+fn doubled_area(corners: &[DVec2]) -> f64 {
+    edges(corners).map(|[from, to]| from.perp_dot(to)).sum()
+}
+
+fn edges(corners: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> + Clone {
+    let count = corners.len();
+    (0..count).map(move |index| [corners[index], corners[(index + 1) % count]])
+}
+
+fn is_convex(corners: &[DVec2]) -> bool {
+    let count = corners.len();
+    edges(corners)
+        .enumerate()
+        .all(|(index, [from, to])| (to - from).perp_dot(corners[(index + 2) % count] - to) > 0.0)
+}
+
+/// An outline whose edges are moved inwards, each by a length of its own; `None` if nothing is left.
+pub(super) fn inset(corners: &[DVec2], by: &mut dyn FnMut() -> f64) -> Option<Vec<DVec2>> {
+    let lengths: Vec<f64> = corners.iter().map(|_| by()).collect();
+    let size = doubled_area(corners).abs().sqrt();
+    let left = match is_convex(corners) {
+        true => clipped(corners, &lengths),
+        false => mitred(corners, &lengths)?,
+    };
+    let mut left: Vec<DVec2> = without_straight_corners(left);
+    left.dedup_by(|one, other| one.distance(*other) < 1e-3 * size);
+    (left.len() > 2 && doubled_area(&left) > 1e-3 * size * size).then_some(left)
+}
+
+/// A convex outline less the strips along its edges (Sutherland & Hodgman 1974).
+fn clipped(corners: &[DVec2], lengths: &[f64]) -> Vec<DVec2> {
+    let mut left = corners.to_vec();
+    for ([from, to], length) in edges(corners).zip(lengths) {
+        let inwards = (to - from).normalize_or_zero().perp();
+        let depth = |point: DVec2| (point - from).dot(inwards) - length;
+        let cut = |[one, other]: [DVec2; 2]| {
+            let (a, b) = (depth(one), depth(other));
+            let crossing = (a > 0.0) != (b > 0.0);
+            let kept = (a > 0.0).then_some(one);
+            kept.into_iter()
+                .chain(crossing.then(|| one + (other - one) * (a / (a - b))))
+        };
+        left = edges(&left).flat_map(cut).collect();
+    }
+    left
+}
+
+/// An outline whose corners move to where the moved edges meet; `None` if an edge would turn round.
+fn mitred(corners: &[DVec2], lengths: &[f64]) -> Option<Vec<DVec2>> {
+    let count = corners.len();
+    let along: Vec<DVec2> = edges(corners)
+        .map(|[from, to]| (to - from).normalize_or_zero())
+        .collect();
+    let moved = |index: usize| {
+        let before = (index + count - 1) % count;
+        let (one, other) = (along[before], along[index]);
+        let turn = one.perp_dot(other);
+        let [a, b] = [lengths[before], lengths[index]];
+        match turn.abs() < 1e-3 {
+            true => corners[index] + other.perp() * b,
+            false => corners[index] + (other * a - one * b) / turn,
+        }
+    };
+    let moved: Vec<DVec2> = (0..count).map(moved).collect();
+    let runs_on = |([from, to], along): ([DVec2; 2], &DVec2)| (to - from).dot(*along) > 0.0;
+    let is_sound = edges(&moved).zip(&along).all(runs_on);
+    is_sound.then_some(moved)
+}
+
+/// An outline with corners rounded to a radius, or less where edges are short.
+pub(super) fn rounded(corners: &[DVec2], radius: f64) -> Vec<DVec2> {
+    let count = corners.len();
+    let mut rounded = vec![];
+    for (index, corner) in corners.iter().enumerate() {
+        let [before, after] = [count - 1, 1].map(|step| corners[(index + step) % count] - *corner);
+        let [short, long] = [before.length(), after.length()];
+        let (back, ahead) = (before / short, after / long);
+        let turn = std::f64::consts::PI - libm::acos(back.dot(ahead).clamp(-1.0, 1.0));
+        let reach = libm::tan(0.5 * turn);
+        let tangent = (radius * reach).min(0.45 * short.min(long));
+        let steps = (turn / ARC).ceil();
+        if radius <= 0.0 || tangent < 1e-6 || steps < 1.0 {
+            rounded.push(*corner);
+            continue;
+        }
+        let bulge = libm::tan(0.25 * turn)
+            * if back.perp_dot(ahead) < 0.0 {
+                1.0
+            } else {
+                -1.0
+            };
+        let (from, to) = (*corner + back * tangent, *corner + ahead * tangent);
+        add_arc(&mut rounded, from, to, bulge);
+        rounded.push(to);
+    }
+    rounded
+}
+
+/// An edge of an outline, ready for distances.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Segment {
+    from: Vec2,
+    along: Vec2,
+    /// 1 over the length's square.
+    scale: f32,
+}
+
+/// The edges of an outline.
+pub(super) fn segments(corners: &[DVec2]) -> impl Iterator<Item = Segment> {
+    edges(corners).map(|[from, to]| {
+        let along = (to - from).as_vec2();
+        Segment {
+            from: from.as_vec2(),
+            along,
+            scale: 1.0 / along.length_squared().max(f32::MIN_POSITIVE),
+        }
+    })
+}
+
+/// How far a point is inside an outline; below 0 outside.
+#[inline]
+pub(super) fn depth(segments: &[Segment], point: Vec2) -> f32 {
+    let (mut nearest, mut is_inside) = (f32::INFINITY, false);
+    for segment in segments {
+        let from = point - segment.from;
+        let share = (from.dot(segment.along) * segment.scale).clamp(0.0, 1.0);
+        nearest = nearest.min((from - segment.along * share).length_squared());
+        // Edges that the ray to the right crosses.
+        let is_across = (from.y < 0.0) != (from.y < segment.along.y);
+        let is_beyond = (from.perp_dot(segment.along) > 0.0) == (segment.along.y > 0.0);
+        is_inside ^= is_across && !is_beyond;
+    }
+    let distance = nearest.sqrt();
+    if is_inside { distance } else { -distance }
+}
+
+impl Segment {
+    /// All its numbers, for keys.
+    pub(super) fn parts(&self) -> [f32; 4] {
+        [self.from.x, self.from.y, self.along.x, self.along.y]
+    }
+}

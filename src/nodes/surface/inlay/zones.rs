@@ -1,0 +1,186 @@
+//! Ground, gap and inlay as a profile of the distance to the outline.
+
+use super::KIND;
+use crate::field::{Block, Kernel, Sampling};
+use crate::key::KeyHasher;
+use crate::node::Inputs;
+use crate::nodes::field::profile::{Ends, Piece, Profile};
+
+/// How it is let in, all in mm.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    pub(super) gap: f64,
+    pub(super) depth: f64,
+    pub(super) step: f64,
+    pub(super) chamfer: f64,
+    pub(super) ground_chamfer: f64,
+}
+
+impl Cut {
+    pub(super) fn read(inputs: &Inputs<'_>) -> Cut {
+        Cut {
+            gap: inputs.number("gap"),
+            depth: inputs.number("depth"),
+            step: inputs.number("step"),
+            chamfer: inputs.number("chamfer"),
+            ground_chamfer: inputs.number("ground_chamfer"),
+        }
+    }
+
+    /// The share of the sky that the bottom of the gap sees.
+    fn openness(&self) -> f64 {
+        let half = 0.5 * self.gap;
+        match self.depth > 0.0 {
+            true => half / (half * half + self.depth * self.depth).sqrt(),
+            false => 1.0,
+        }
+    }
+
+    /// Shares of glue and of what is let in, what is added to the height, and what is left of the light.
+    fn profile(&self) -> (Vec<Piece<4>>, f64) {
+        let half = 0.5 * self.gap;
+        let piece = |start: f64, values: [f64; 4], slope: f64| {
+            let mut cubic = values.map(|value| [value, 0.0, 0.0, 0.0]);
+            cubic[2][1] = slope;
+            Piece { start, cubic }
+        };
+        let edge = half + self.chamfer;
+        let pieces = [
+            (-half - self.ground_chamfer, [0.0, 0.0, 0.0, 1.0], -1.0),
+            (-half, [1.0, 0.0, 0.0, self.openness()], 0.0),
+            (half, [0.0, 1.0, self.step - self.chamfer, 1.0], 1.0),
+            (edge, [0.0, 1.0, self.step, 1.0], 0.0),
+        ];
+        let mut all: Vec<Piece<4>> = vec![];
+        for (start, values, slope) in pieces {
+            // A piece without width is none.
+            all.retain(|before| before.start < start);
+            all.push(piece(start, values, slope));
+        }
+        if all[0].start == -half {
+            // What lies before the first piece has the value at its start.
+            all.insert(0, piece(-half - 1.0, [0.0, 0.0, 0.0, 1.0], 0.0));
+        }
+        (all, edge + 1.0)
+    }
+}
+
+/// The zones around an outline. Columns in: distance to it, number of the cell. Columns out: share of glue, share of what
+/// is let in, what is added to the height in mm, what is left of the light.
+#[derive(Debug)]
+pub(super) struct Zones {
+    profile: Profile<4>,
+}
+
+impl Zones {
+    pub(super) fn new(cut: &Cut) -> Zones {
+        let (pieces, end) = cut.profile();
+        Zones {
+            profile: Profile::new(pieces, end, Ends::Stay),
+        }
+    }
+}
+
+impl Kernel for Zones {
+    fn add_to_key(&self, key: &mut KeyHasher) {
+        key.text("zones of inlay").whole(i64::from(KIND.version));
+        self.profile.add_to_key(key);
+    }
+
+    fn width(&self) -> usize {
+        4
+    }
+
+    fn reads_spread(&self, column: usize) -> bool {
+        column == 0
+    }
+
+    fn sampling(&self) -> Sampling {
+        // Where another cell begins, the distance has a kink.
+        Sampling::FilteredWhereEven {
+            column: 1,
+            absolute: 0.5,
+        }
+    }
+
+    fn nanoseconds(&self) -> f32 {
+        15.0
+    }
+
+    fn evaluate(&self, block: &mut Block<'_>) {
+        let border = block.inputs[0];
+        for (index, value) in border.values.iter().enumerate() {
+            let spread = border.spread.map(|along| f64::from(along[index]));
+            let means = self.profile.mean(f64::from(*value), spread);
+            for (output, mean) in block.outputs.iter_mut().zip(means) {
+                output[index] = mean as f32;
+            }
+        }
+    }
+}
+
+/// Columns in: those of the ground, of the glue, and of what is let in; share of glue, share of what is let in.
+#[derive(Debug)]
+pub(super) struct Joined {
+    /// Columns of each.
+    pub(super) width: usize,
+}
+
+impl Kernel for Joined {
+    fn add_to_key(&self, key: &mut KeyHasher) {
+        key.text("joined by inlay")
+            .whole(i64::from(KIND.version))
+            .whole(self.width as i64);
+    }
+
+    fn width(&self) -> usize {
+        self.width
+    }
+
+    fn evaluate(&self, block: &mut Block<'_>) {
+        let column = |part: usize| block.inputs[part].values;
+        let [glue_share, share] = [0, 1].map(|part| column(3 * self.width + part));
+        for (part, output) in block.outputs.iter_mut().enumerate() {
+            let [ground, glue, inlaid] = [0, 1, 2].map(|which| column(which * self.width + part));
+            for (index, output) in output.iter_mut().enumerate() {
+                let rest = 1.0 - glue_share[index] - share[index];
+                *output = ground[index] * rest
+                    + glue[index] * glue_share[index]
+                    + inlaid[index] * share[index];
+            }
+        }
+    }
+}
+
+/// The sum of two columns.
+#[derive(Debug)]
+pub(super) struct Sum;
+
+/// The product of two columns.
+#[derive(Debug)]
+pub(super) struct Product;
+
+macro_rules! of_two_columns {
+    ($kernel:ty, $name:literal, $combine:expr) => {
+        impl Kernel for $kernel {
+            fn add_to_key(&self, key: &mut KeyHasher) {
+                key.text($name).whole(i64::from(KIND.version));
+            }
+
+            fn width(&self) -> usize {
+                1
+            }
+
+            fn evaluate(&self, block: &mut Block<'_>) {
+                let combine: fn(f32, f32) -> f32 = $combine;
+                let columns = block.inputs[0].values.iter().zip(block.inputs[1].values);
+                for (output, (a, b)) in block.outputs[0].iter_mut().zip(columns) {
+                    *output = combine(*a, *b);
+                }
+            }
+        }
+    };
+}
+
+of_two_columns!(Sum, "height of inlay", |a, b| a + b);
+of_two_columns!(Product, "light of inlay", |a, b| a * b);
