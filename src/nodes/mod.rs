@@ -84,6 +84,16 @@ pub static KINDS: &[&Kind] = &[
     &region::combine_regions::KIND,
     &region::grow_region::KIND,
     &region::region_field::KIND,
+    &partition::inset_cells::KIND,
+    &partition::cell_attribute::KIND,
+    &partition::cell_table::KIND,
+    &partition::cell_fields::KIND,
+    &partition::cell_value::KIND,
+    &partition::per_cell::KIND,
+    &partition::region_cells::KIND,
+    &partition::split_cells::KIND,
+    &partition::voronoi_split::KIND,
+    &surface::inlay::KIND,
 ];
 
 /// The kind called `name`.
