@@ -14,3 +14,4 @@ pub(crate) mod polygon;
 pub mod spline;
 pub(crate) mod subdivision;
 mod tangents;
+pub(crate) mod voronoi;

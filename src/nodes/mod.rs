@@ -73,6 +73,8 @@ pub static KINDS: &[&Kind] = &[
     &partition::cell_value::KIND,
     &partition::per_cell::KIND,
     &partition::region_cells::KIND,
+    &partition::split_cells::KIND,
+    &partition::voronoi_split::KIND,
     &surface::inlay::KIND,
 ];
 

@@ -3,6 +3,7 @@
 
 mod light;
 mod refused;
+mod relief;
 mod sight;
 
 #[path = "../support/levels.rs"]

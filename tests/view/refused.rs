@@ -98,6 +98,52 @@ fn flat_pieces_need_a_place_on_the_mesh() {
 }
 
 #[test]
+fn what_cannot_lie_on_the_ground_is_refused() {
+    let wood = r#""grain": solid_noise(size: (4, 4, 4)), "wood": material(base_color: (0.5, 0.5, 0.5), height: "= 2 * grain.value")"#;
+    let flat = r#""plain": plane_noise(size: (4, 4, 4)), "flat": material(base_color: (0.5, 0.5, 0.5), height: "= 2 * plain.value")"#;
+    let none = r#""zero": plane_noise(size: (4, 4, 4)), "none": math(operation: power, a: "= 1 + 1e4 * zero * zero + 1e4", b: 60),
+                  "flat": material(base_color: (0.5, 0.5, 0.5), height: "= 1e9 * none")"#;
+    for (nodes, view, expected) in [
+        (
+            wood,
+            r#"of: "wood", size: (40, 30)"#,
+            "an uncut material has no shape, and `on` gives none",
+        ),
+        (
+            flat,
+            r#"of: "flat""#,
+            "the material is not a cut piece, so it has no size",
+        ),
+        (
+            flat,
+            r#"of: "flat", size: (40, 30), cuts: [(point: (0, 0, 0), normal: (1, 0, 0))]"#,
+            "a flat piece has no inside that cuts could show",
+        ),
+        (
+            &format!("{wood}, {flat}"),
+            r#"of: "flat", size: (40, 30), bark: "wood""#,
+            "`bark` is set, but a flat piece is of one material",
+        ),
+        (
+            &format!(r#"{wood}, "shape": block(size: (40, 30), thickness: 20)"#),
+            r#"of: "wood", on: "shape", relief: 2"#,
+            "`relief` is set, but `on` gives a shape of its own",
+        ),
+        (
+            none,
+            r#"of: "flat", size: (40, 30)"#,
+            "the height at (0.000, 0.000) is not a number",
+        ),
+    ] {
+        let text =
+            format!("(nodes: {{ {nodes} }}, outputs: {{ \"a\": view(pixels: (8, 8), {view}) }})");
+        let run = workshop().render(&text, &[], Cancel::new(), &|_| {});
+        let error = run.result.expect_err("the recipe is wrong");
+        assert_eq!(error.diagnostics()[0].message, expected);
+    }
+}
+
+#[test]
 fn logs_that_are_nowhere_are_refused() {
     let log = |log: &str| {
         format!(

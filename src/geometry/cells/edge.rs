@@ -57,6 +57,16 @@ impl Edge {
         ends[0].min(ends[1])
     }
 
+    /// The lowest and the highest corner of a box around it.
+    pub(super) fn around(&self) -> [DVec2; 2] {
+        // An arc reaches no farther beside its chord than its sagitta, nor beyond its ends.
+        let reach = self.from.distance(self.to) * 0.5 * self.bulge.abs();
+        [
+            self.from.min(self.to) - reach,
+            self.from.max(self.to) + reach,
+        ]
+    }
+
     /// The same edge from its lower end to its upper one.
     fn upwards(self) -> Edge {
         let is_down =

@@ -2,12 +2,15 @@
 
 mod edge;
 mod grid;
+mod tree;
 
 use self::edge::Edge;
 use self::grid::Grid;
+use self::tree::EdgeTree;
 use super::box_tree::BoxTree;
 use crate::value::Partition;
 use glam::DVec2;
+use std::collections::HashMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -21,7 +24,12 @@ pub(crate) struct CellIndex {
     copies: Vec<Copy>,
     grid: Grid,
     tree: BoxTree,
+    /// Cells with many edges.
+    large: HashMap<u32, EdgeTree>,
 }
+
+/// A cell with more edges has them in a tree.
+const MANY: usize = 32;
 
 /// A cell, or one of its repetitions.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +65,7 @@ impl CellIndex {
         CellIndex {
             partition: Arc::clone(partition),
             grid: Grid::new(&boxes, partition.len()),
+            large: large(partition),
             copies,
             tree,
         }
@@ -91,6 +100,11 @@ impl CellIndex {
         inside.unwrap_or_else(|| self.nearest(point))
     }
 
+    /// The id of the cell at a point.
+    pub(crate) fn id_at(&self, point: DVec2) -> u32 {
+        self.partition.ids[self.find(point, None).cell as usize]
+    }
+
     /// The cell that is nearest to a point outside all.
     fn nearest(&self, point: DVec2) -> Spot {
         let spot = |index: u32| {
@@ -108,25 +122,10 @@ impl CellIndex {
     /// A cell as seen from a point.
     fn spot(&self, cell: u32, shift: DVec2, point: DVec2) -> Spot {
         let at = point - shift;
-        let (mut is_inside, mut nearest, mut edge) = (false, f64::INFINITY, 0);
-        for ring in self.partition.rings_of(cell as usize) {
-            let corners = &self.partition.corners[ring.clone()];
-            let mut from = corners[corners.len() - 1];
-            let mut index = ring.end - 1;
-            for (offset, to) in corners.iter().enumerate() {
-                let side = Edge {
-                    from,
-                    to: *to,
-                    bulge: self.partition.bulge(index),
-                };
-                is_inside ^= side.turns_over(at);
-                let distance = side.distance_squared(at);
-                if distance < nearest {
-                    (nearest, edge) = (distance, index as u32);
-                }
-                (from, index) = (*to, ring.start + offset);
-            }
-        }
+        let (is_inside, nearest, edge) = match has_many(&self.partition, cell) {
+            true => self.large[&cell].meet(at),
+            false => meet(&self.partition, cell, at),
+        };
         let distance = nearest.sqrt();
         Spot {
             cell,
@@ -136,6 +135,56 @@ impl CellIndex {
             shift,
         }
     }
+}
+
+/// Whether a point is inside a cell, the square of its distance to the nearest edge, and the corner before that edge.
+fn meet(partition: &Partition, cell: u32, point: DVec2) -> (bool, f64, u32) {
+    let mut met = (false, f64::INFINITY, 0);
+    for_edges(partition, cell, |edge, corner| {
+        met.0 ^= edge.turns_over(point);
+        let distance = edge.distance_squared(point);
+        if distance < met.1 {
+            (met.1, met.2) = (distance, corner);
+        }
+    });
+    met
+}
+
+/// Calls `each` with the edges of a cell and the corners before them.
+#[inline(always)]
+fn for_edges(partition: &Partition, cell: u32, mut each: impl FnMut(Edge, u32)) {
+    for ring in partition.rings_of(cell as usize) {
+        let corners = &partition.corners[ring.clone()];
+        let mut from = corners[corners.len() - 1];
+        let mut index = ring.end - 1;
+        for (offset, to) in corners.iter().enumerate() {
+            let edge = Edge {
+                from,
+                to: *to,
+                bulge: partition.bulge(index),
+            };
+            each(edge, index as u32);
+            (from, index) = (*to, ring.start + offset);
+        }
+    }
+}
+
+/// Whether a cell has so many edges that they are kept in a tree.
+fn has_many(partition: &Partition, cell: u32) -> bool {
+    let rings = [0, 1].map(|end| partition.cells[cell as usize + end] as usize);
+    let [first, last] = rings.map(|ring| partition.rings[ring] as usize);
+    last - first > MANY
+}
+
+/// The edges of cells that have many, by the cells.
+fn large(partition: &Partition) -> HashMap<u32, EdgeTree> {
+    let cells = (0..partition.len() as u32).filter(|cell| has_many(partition, *cell));
+    let tree = |cell: u32| {
+        let mut edges = vec![];
+        for_edges(partition, cell, |edge, corner| edges.push((edge, corner)));
+        (cell, EdgeTree::new(edges))
+    };
+    cells.map(tree).collect()
 }
 
 /// All cells, and of a periodic partition those of their repetitions that are in the first period or near it.

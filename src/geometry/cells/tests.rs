@@ -167,3 +167,43 @@ fn arcs_are_exact() {
         }
     }
 }
+
+#[test]
+fn cells_with_many_edges_are_found_alike() {
+    // A wheel with a hole, and the same with its edges in a list.
+    let point = |index: usize, radius: f64| {
+        let angle = index as f64 * PI / 100.0;
+        let radius = if index.is_multiple_of(2) {
+            radius
+        } else {
+            0.8 * radius
+        };
+        DVec2::new(angle.cos(), angle.sin()) * radius
+    };
+    let outline = (0..200).map(|index| point(index, 10.0));
+    let hole = (0..60).map(|index| point(200 - index * 3, 4.0));
+    let corners: Vec<DVec2> = outline.chain(hole).collect();
+    let wheel = Arc::new(Partition {
+        neighbours: vec![NONE; corners.len()],
+        bulges: corners
+            .iter()
+            .map(|corner| 0.1 * corner.x.signum())
+            .collect(),
+        corners,
+        rings: vec![0, 200, 260],
+        cells: vec![0, 2],
+        ids: vec![0],
+        centres: vec![DVec2::ZERO],
+        frames: vec![DVec2::X],
+        areas: vec![200.0],
+        ..Partition::default()
+    });
+    let index = CellIndex::new(&wheel);
+    assert_eq!(index.large.len(), 1);
+    for point in points(3000, 24.0).map(|point| point - 12.0) {
+        let (inside, distance, _) = meet(&wheel, 0, point);
+        let spot = index.find(point, None);
+        assert_eq!(spot.border >= 0.0, inside, "{point}");
+        assert_eq!(spot.border.abs(), distance.sqrt(), "{point}");
+    }
+}

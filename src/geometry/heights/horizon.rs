@@ -18,7 +18,8 @@ impl Heights {
             to: furthest,
         };
         let mut steepest = f64::NEG_INFINITY;
-        line.walk(self, stretch, |square| {
+        // Close to the point everything counts, so the smallest squares come first.
+        line.walk(self, (stretch, 0), |square| {
             let Stretch { from, to } = square.stretch;
             let above = square.greatest - point.z;
             // Up to a higher one it is steepest from nearby, down to a lower one from far away.

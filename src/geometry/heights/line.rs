@@ -66,11 +66,12 @@ impl Line {
         (from < to).then_some(Stretch { from, to })
     }
 
-    /// Shows the squares below a stretch in their order to `choose`, beginning with the largest.
+    /// Shows the squares below a stretch in their order to `choose`, beginning with one of `2^level` cells a side, or
+    /// with the largest.
     pub(super) fn walk(
         &self,
         heights: &Heights,
-        stretch: Stretch,
+        (stretch, level): (Stretch, usize),
         mut choose: impl FnMut(&Square) -> Way,
     ) {
         let Some(whole) = self.over(heights, stretch) else {
@@ -78,7 +79,7 @@ impl Line {
         };
         let mut from = whole.from;
         let mut cell = [0, 1].map(|axis| self.first_cell(heights, axis, from));
-        let mut level = heights.levels.len();
+        let mut level = level.min(heights.levels.len());
         while from < whole.to {
             let (to, axis) = self.leaving(cell, level);
             let square = Square {

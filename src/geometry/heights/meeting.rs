@@ -21,7 +21,7 @@ impl Heights {
         let entry = line.over(self, everything)?.from;
         let above = |distance: f64| origin.z + direction.z * distance;
         let mut found = None;
-        line.walk(self, everything, |square| {
+        line.walk(self, (everything, usize::MAX), |square| {
             let Stretch { from, to } = square.stretch;
             if above(from).min(above(to)) > square.greatest {
                 return Way::Past;

@@ -12,6 +12,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use spade::Triangulation as _;
 use spade::handles::FixedVertexHandle;
+use std::ops::Range;
 
 /// Cells in a chunk.
 const CHUNK: usize = 8192;
@@ -29,12 +30,23 @@ pub(super) struct Maker<'a> {
 
 /// Cells of one chunk of vertices.
 #[derive(Default)]
-struct Part {
-    corners: Vec<Corner>,
+pub(super) struct Part {
+    corners: Vec<DVec2>,
+    across: Vec<u32>,
     /// Where the corners of each cell begin, and the end; cells that there are not have no corners.
     starts: Vec<u32>,
     areas: Vec<f64>,
     centres: Vec<DVec2>,
+    /// Whether corners lie at one place that do not stand for each other.
+    has_equal: bool,
+}
+
+/// The cell that is being made.
+#[derive(Default)]
+struct Draft {
+    cell: Vec<Corner>,
+    /// Of each edge the triangles' corner that it begins with, and where the seed beyond is.
+    around: Vec<(u32, DVec2)>,
 }
 
 impl<'a> Maker<'a> {
@@ -54,33 +66,48 @@ impl<'a> Maker<'a> {
     }
 
     /// The cells of the seeds with these vertices; `None` if there are none.
-    pub(super) fn partition(&self, vertices: &[Option<FixedVertexHandle>]) -> Option<Partition> {
-        let count = self.dual.triangles.num_vertices();
-        let chunks = (0..count).into_par_iter().step_by(CHUNK);
-        let parts: Vec<Part> = chunks
-            .map(|first| self.part(first..count.min(first + CHUNK)))
-            .collect();
+    pub(super) fn partition(
+        &mut self,
+        vertices: &[Option<FixedVertexHandle>],
+    ) -> Option<Partition> {
+        let mut parts = self.parts();
+        if parts.iter().any(|part| part.has_equal) {
+            drop(parts);
+            self.corners.join(self.dual);
+            parts = self.parts();
+        }
         let found = |vertex: &Option<FixedVertexHandle>| {
             let place = vertex.map(|vertex| [vertex.index() / CHUNK, vertex.index() % CHUNK]);
-            place.filter(|[part, cell]| parts[*part].size(*cell) > 0)
+            place.filter(|[part, cell]| !parts[*part].range(*cell).is_empty())
         };
-        let places: Vec<Option<[usize; 2]>> = vertices.par_iter().map(found).collect();
+        let places: Vec<Option<[usize; 2]>> = vertices.iter().map(found).collect();
         gather(&parts, &places, self.scale)
     }
 
-    fn part(&self, vertices: std::ops::Range<usize>) -> Part {
+    fn parts(&self) -> Vec<Part> {
+        let count = self.dual.triangles.num_vertices();
+        let chunks = (0..count).into_par_iter().step_by(CHUNK);
+        let part = |first| self.part(first..count.min(first + CHUNK));
+        chunks.map(part).collect()
+    }
+
+    fn part(&self, vertices: Range<usize>) -> Part {
         let mut part = Part::default();
-        let (mut around, mut cell) = (vec![], vec![]);
+        part.corners.reserve(6 * vertices.len());
+        part.across.reserve(6 * vertices.len());
+        let mut draft = Draft::default();
         for vertex in vertices {
             part.starts.push(part.corners.len() as u32);
-            cell.clear();
-            let at = self.cell(FixedVertexHandle::from_index(vertex), &mut around, &mut cell);
+            let vertex = FixedVertexHandle::from_index(vertex);
+            let at = self.draw(vertex, &mut draft, &mut part.has_equal);
             let (mut area, mut centre) = (0.0, at);
-            if cell.len() >= 3 {
-                (area, centre) = measure(at, &cell);
-                if area > SAME * extent(&cell) {
-                    self.into_first_period(&mut centre, &mut cell, &around);
-                    part.corners.extend_from_slice(&cell);
+            if draft.cell.len() >= 3 {
+                (area, centre) = measure(at, &draft.cell);
+                if area > SAME * extent(&draft.cell) {
+                    self.into_first_period(&mut centre, &mut draft);
+                    part.corners
+                        .extend(draft.cell.iter().map(|corner| corner.0));
+                    part.across.extend(draft.cell.iter().map(|corner| corner.1));
                 }
             }
             part.areas.push(area);
@@ -90,49 +117,51 @@ impl<'a> Maker<'a> {
         part
     }
 
-    /// The corners of a vertex's cell, and of each edge the triangles' corner that it begins with and the seed beyond.
-    /// Gives where its own seed is.
-    fn cell(
-        &self,
-        vertex: FixedVertexHandle,
-        around: &mut Vec<(u32, DVec2)>,
-        cell: &mut Vec<Corner>,
-    ) -> DVec2 {
+    /// Draws the cell of a vertex, none if it is a copy. Gives where its seed is.
+    fn draw(&self, vertex: FixedVertexHandle, draft: &mut Draft, has_equal: &mut bool) -> DVec2 {
         let vertex = self.dual.triangles.vertex(vertex);
-        let site = vertex.data();
-        around.clear();
+        let site = *vertex.data();
+        draft.cell.clear();
+        draft.around.clear();
         if site.seed == FAR || site.shift != [0; 2] {
             return site.at;
         }
-        let Some(edge) = vertex.out_edge() else {
+        let mut is_within = true;
+        let Some(first) = vertex.out_edge() else {
             return site.at;
         };
-        let mut is_within = true;
-        let mut before = self.corners.index(edge.rev().face().fix().index());
+        let mut before = self.corners.index(first.rev().face().fix().index());
+        let mut at = self.at(before);
         for edge in vertex.out_edges() {
             let after = self.corners.index(edge.face().fix().index());
-            if after != before {
-                let at = self.at(before);
-                is_within &= self.ground.holds(at);
-                let beyond = *edge.to().data();
-                around.push((before, beyond.at));
-                cell.push((at, beyond.seed));
+            if after == before {
+                continue;
             }
-            before = after;
+            let beyond = *edge.to().data();
+            draft.cell.push((at, beyond.seed));
+            draft.around.push((before, beyond.at));
+            is_within &= self.ground.holds(at);
+            let next = self.at(after);
+            *has_equal |= (next - at).abs().max_element() <= SAME;
+            (before, at) = (after, next);
         }
         if !is_within && !self.scale.repeats {
-            self.ground.cut(site.at, around, cell);
+            self.ground.cut(site.at, &draft.around, &mut draft.cell);
         }
         site.at
     }
 
     fn at(&self, corner: u32) -> DVec2 {
         let at = self.corners.at(corner, [0; 2]);
-        if self.scale.repeats { at } else { self.ground.snapped(at) }
+        if self.scale.repeats {
+            at
+        } else {
+            self.ground.snapped(at)
+        }
     }
 
     /// Moves a cell by whole periods so that its centre is within the first.
-    fn into_first_period(&self, centre: &mut DVec2, cell: &mut [Corner], around: &[(u32, DVec2)]) {
+    fn into_first_period(&self, centre: &mut DVec2, draft: &mut Draft) {
         if !self.scale.repeats || self.ground.holds_within(*centre) {
             return;
         }
@@ -141,19 +170,15 @@ impl<'a> Maker<'a> {
         let shift = [step(centre.x, high.x), step(centre.y, high.y)];
         let steps = DVec2::from_array(shift.map(f64::from));
         *centre = (*centre + steps * high).max(DVec2::ZERO);
-        for ((at, _), (corner, _)) in cell.iter_mut().zip(around) {
+        for ((at, _), (corner, _)) in draft.cell.iter_mut().zip(&draft.around) {
             *at = self.corners.at(*corner, shift);
         }
     }
 }
 
 impl Part {
-    fn size(&self, cell: usize) -> usize {
-        (self.starts[cell + 1] - self.starts[cell]) as usize
-    }
-
-    fn cell(&self, cell: usize) -> &[Corner] {
-        &self.corners[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    fn range(&self, cell: usize) -> Range<usize> {
+        self.starts[cell] as usize..self.starts[cell + 1] as usize
     }
 }
 
@@ -162,38 +187,45 @@ fn gather(parts: &[Part], places: &[Option<[usize; 2]>], scale: &Scale) -> Optio
     let kept: Vec<u32> = (0..places.len() as u32)
         .filter(|seed| places[*seed as usize].is_some())
         .collect();
-    let places: Vec<[usize; 2]> = places.iter().copied().flatten().collect();
-    if kept.is_empty() {
-        return None;
-    }
-    let mut rings = Vec::with_capacity(kept.len() + 1);
-    let mut end = 0_u32;
-    for [part, cell] in &places {
-        rings.push(end);
-        end += parts[*part].size(*cell) as u32;
-    }
-    rings.push(end);
-    let is_whole = kept.last().is_some_and(|last| *last as usize + 1 == kept.len());
+    let last = *kept.last()?;
+    let is_whole = last as usize + 1 == kept.len();
     let number = |seed: u32| match seed {
         FAR => Partition::NONE,
         seed if is_whole => seed,
-        seed => kept.binary_search(&seed).map_or(Partition::NONE, |cell| cell as u32),
+        seed => kept
+            .binary_search(&seed)
+            .map_or(Partition::NONE, |cell| cell as u32),
     };
-    let of = |[part, cell]: &[usize; 2]| parts[*part].cell(*cell);
-    let all = || places.par_iter().flat_map_iter(of);
-    let period = scale.repeats.then_some(scale.high * scale.unit);
-    Some(Partition {
-        corners: all().map(|(at, _)| scale.place(*at)).collect(),
-        neighbours: all().map(|(_, seed)| number(*seed)).collect(),
-        rings,
+    let total = parts.iter().map(|part| part.corners.len()).sum();
+    let mut partition = Partition {
+        corners: Vec::with_capacity(total),
+        neighbours: Vec::with_capacity(total),
+        rings: Vec::with_capacity(kept.len() + 1),
         cells: (0..=kept.len() as u32).collect(),
-        centres: places.par_iter().map(|[part, cell]| scale.place(parts[*part].centres[*cell])).collect(),
+        centres: Vec::with_capacity(kept.len()),
         frames: vec![DVec2::X; kept.len()],
-        areas: places.par_iter().map(|[part, cell]| parts[*part].areas[*cell] * scale.unit * scale.unit).collect(),
-        ids: kept,
-        period,
+        areas: Vec::with_capacity(kept.len()),
+        ids: kept.clone(),
+        period: scale.repeats.then_some(scale.high * scale.unit),
         ..Partition::default()
-    })
+    };
+    partition.rings.push(0);
+    for [part, cell] in places.iter().flatten() {
+        let (part, cell) = (&parts[*part], *cell);
+        let range = part.range(cell);
+        let corners = part.corners[range.clone()].iter();
+        partition.corners.extend(corners.map(|at| scale.place(*at)));
+        let across = part.across[range].iter();
+        partition
+            .neighbours
+            .extend(across.map(|seed| number(*seed)));
+        partition.rings.push(partition.corners.len() as u32);
+        partition.centres.push(scale.place(part.centres[cell]));
+        partition
+            .areas
+            .push(part.areas[cell] * scale.unit * scale.unit);
+    }
+    Some(partition)
 }
 
 /// Area and centre of gravity of a polygon, seen from a point nearby.

@@ -67,7 +67,9 @@ impl Box {
         }
         match (left, first) {
             (Some(left), Some(first)) => self.walk(left, first, &mut cut),
-            _ if is_inside(cell, 0.5 * self.high) => cut.extend((0..4).map(|it| (self.corner(it), FAR))),
+            _ if is_inside(cell, 0.5 * self.high) => {
+                cut.extend((0..4).map(|it| (self.corner(it), FAR)))
+            }
             _ => {}
         }
         *cell = cut;
@@ -99,7 +101,8 @@ impl Box {
             }
         }
         let ends = [enters.1, leaves.1].map(|at| self.snapped(at));
-        (enters.0 < leaves.0 && ends[0] != ends[1] && ends.iter().all(|at| self.holds(*at))).then_some(ends)
+        (enters.0 < leaves.0 && ends[0] != ends[1] && ends.iter().all(|at| self.holds(*at)))
+            .then_some(ends)
     }
 
     /// Goes along the sides, counterclockwise, from where a cell leaves to where it enters.
@@ -133,7 +136,12 @@ impl Box {
 
     fn corner(&self, number: usize) -> DVec2 {
         let high = self.high;
-        [DVec2::ZERO, DVec2::new(high.x, 0.0), high, DVec2::new(0.0, high.y)][number]
+        [
+            DVec2::ZERO,
+            DVec2::new(high.x, 0.0),
+            high,
+            DVec2::new(0.0, high.y),
+        ][number]
     }
 }
 

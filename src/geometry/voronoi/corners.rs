@@ -15,7 +15,9 @@ use std::collections::BTreeMap;
 /// The corners, one for each triangle.
 pub(super) struct Corners {
     /// Where they are; without the outer face, which is the first.
-    places: Vec<Place>,
+    places: Vec<DVec2>,
+    /// By how many periods each is to be moved; empty if nothing repeats.
+    shifts: Vec<[i8; 2]>,
     /// The corner that stands for each, if some are at one place.
     stands_for: Option<Vec<u32>>,
     period: DVec2,
@@ -38,14 +40,20 @@ impl Corners {
             let vertices = dual.triangles.face(*face).vertices();
             Place::of(&vertices.map(|vertex| *vertex.data()), period)
         };
-        let places = faces.par_iter().map(place).collect();
-        let mut corners = Corners {
+        let (mut places, mut shifts) = (vec![], vec![]);
+        if dual.period.is_some() {
+            let both = faces.par_iter().map(|face| place(face).both());
+            both.unzip_into_vecs(&mut places, &mut shifts);
+        } else {
+            let only = faces.par_iter().map(|face| place(face).at);
+            only.collect_into_vec(&mut places);
+        }
+        Corners {
             places,
+            shifts,
             stands_for: None,
             period,
-        };
-        corners.join(dual);
-        corners
+        }
     }
 
     /// The corner that stands for the one of a triangle.
@@ -59,13 +67,16 @@ impl Corners {
 
     /// Where a corner is, moved by a number of periods.
     pub(super) fn at(&self, index: u32, shift: [i8; 2]) -> DVec2 {
-        let place = self.places[index as usize];
-        let sum = |axis: usize| f64::from(place.shift[axis]) + f64::from(shift[axis]);
-        place.at + DVec2::new(sum(0), sum(1)) * self.period
+        let at = self.places[index as usize];
+        let Some(own) = self.shifts.get(index as usize) else {
+            return at;
+        };
+        let sum = |axis: usize| f64::from(own[axis]) + f64::from(shift[axis]);
+        at + DVec2::new(sum(0), sum(1)) * self.period
     }
 
     /// Joins corners at one place.
-    fn join(&mut self, dual: &Dual) {
+    pub(super) fn join(&mut self, dual: &Dual) {
         let pairs = self.pairs(dual);
         if pairs.is_empty() {
             return;
@@ -81,7 +92,11 @@ impl Corners {
             group.extend(sites);
         }
         for (first, sites) in groups {
-            self.places[first as usize] = Place::of_many(sites, self.period);
+            let place = Place::of_many(sites, self.period);
+            self.places[first as usize] = place.at;
+            if let Some(shift) = self.shifts.get_mut(first as usize) {
+                *shift = place.shift;
+            }
         }
         for index in 0..parents.len() as u32 {
             root(&mut parents, index);
@@ -94,7 +109,10 @@ impl Corners {
         let pairs_at = |vertex: usize| {
             let vertex = dual.triangles.vertex(FixedVertexHandle::from_index(vertex));
             let later = move |edge: &Edge<'_>| edge.to().index() > vertex.index();
-            vertex.out_edges().filter(later).filter_map(|edge| self.pair(edge))
+            vertex
+                .out_edges()
+                .filter(later)
+                .filter_map(|edge| self.pair(edge))
         };
         let vertices = (0..dual.triangles.num_vertices()).into_par_iter();
         vertices.flat_map_iter(pairs_at).collect()
@@ -135,6 +153,10 @@ fn root(parents: &mut [u32], member: u32) -> u32 {
 }
 
 impl Place {
+    fn both(self) -> (DVec2, [i8; 2]) {
+        (self.at, self.shift)
+    }
+
     /// The centre of the circle through three sites.
     fn of(sites: &[Site; 3], period: DVec2) -> Place {
         let home = sites.map(|site| home(&site, period));
@@ -171,7 +193,13 @@ impl Place {
         });
         let first = sites[0];
         let farthest = |measure: &dyn Fn(&Site) -> f64| {
-            let later = |best: Site, site: &Site| if measure(site) > measure(&best) { *site } else { best };
+            let later = |best: Site, site: &Site| {
+                if measure(site) > measure(&best) {
+                    *site
+                } else {
+                    best
+                }
+            };
             sites.iter().fold(first, later)
         };
         let second = farthest(&|site| site.at.distance_squared(first.at));

@@ -9,7 +9,10 @@ mod clip;
 mod corners;
 mod order;
 mod periodic;
+mod power;
 mod triangulation;
+
+pub(crate) use power::power_cells;
 
 use crate::value::Partition;
 use glam::DVec2;
@@ -55,8 +58,8 @@ pub(crate) fn voronoi<E>(
     let sites = scale.sites(seeds);
     let dual = triangulation::Dual::new(&sites, None, go_on)?;
     let vertices = dual.vertices(seeds.len());
-    let partition = cells::Maker::new(&dual, &scale).partition(&vertices);
     go_on()?;
+    let partition = cells::Maker::new(&dual, &scale).partition(&vertices);
     Ok(partition.map(|partition| {
         let without = seeds.len() - partition.len();
         Cells {

@@ -1,10 +1,10 @@
 //! Cells of a plane that repeats: seeds near the border are copied to beyond the opposite one.
 //!
 //! How far the copies must reach is not known before: the cells are right once all circles around their corners, through
-//! the seeds next to them, lie where there are copies. If they do not, the copies reach twice as far.
+//! the seeds next to them, lie where there are copies. If they do not, the copies reach as far as the circles do.
 
 use super::cells::Maker;
-use super::triangulation::{Dual, FAR};
+use super::triangulation::Dual;
 use super::{Cells, Scale, Site, on_grid};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -27,9 +27,10 @@ pub(super) fn cells<E>(
     loop {
         let copies = with_copies(&sites, period, reach);
         let dual = Dual::new(&copies, Some(period), go_on)?;
-        let maker = Maker::new(&dual, scale);
+        let mut maker = Maker::new(&dual, scale);
         let vertices = dual.vertices(seeds.len());
-        if are_right(&dual, &maker, &vertices, [period, reach]) {
+        let needed = needed(&dual, &maker, &vertices, period);
+        if (0..2).all(|axis| needed[axis] <= reach[axis] || reach[axis] >= period[axis]) {
             let partition = maker.partition(&vertices);
             return Ok(partition.map(|partition| Cells {
                 equal: sites.len() - partition.len(),
@@ -37,12 +38,12 @@ pub(super) fn cells<E>(
                 partition,
             }));
         }
-        reach = (2.0 * reach).min(period);
+        reach = needed.max(1.5 * reach).min(period);
     }
 }
 
 /// All seeds, moved into the first period.
-fn first_period(seeds: &[DVec2], scale: &Scale, period: DVec2) -> Vec<Site> {
+pub(super) fn first_period(seeds: &[DVec2], scale: &Scale, period: DVec2) -> Vec<Site> {
     let site = |(seed, position): (usize, &DVec2)| {
         let at = (*position - scale.low) / scale.unit;
         let at = at - (at / period).floor() * period;
@@ -82,31 +83,26 @@ fn with_copies(sites: &[Site], period: DVec2, reach: DVec2) -> Vec<Site> {
     sites.iter().flat_map(copies).collect()
 }
 
-/// Whether no seed that was not copied could change a cell.
-fn are_right(
+/// How far the circles around the corners of cells reach beyond the sides.
+fn needed(
     dual: &Dual,
     maker: &Maker<'_>,
     vertices: &[Option<FixedVertexHandle>],
-    [period, reach]: [DVec2; 2],
-) -> bool {
-    // The copies of all seeds are as far as those of one can matter.
-    let open = [0, 1].map(|axis| reach[axis] < period[axis]);
-    if open == [false; 2] {
-        return true;
-    }
-    let is_covered = |centre: DVec2, radius: f64| {
-        (0..2).all(|axis| {
-            let [low, high] = [centre[axis] - radius, centre[axis] + radius];
-            !open[axis] || (low >= -reach[axis] && high <= period[axis] + reach[axis])
-        })
-    };
-    vertices.par_iter().flatten().all(|vertex| {
+    period: DVec2,
+) -> DVec2 {
+    let of_vertex = |vertex: &FixedVertexHandle| {
         let vertex = dual.triangles.vertex(*vertex);
         let at = vertex.data().at;
-        vertex.out_edges().all(|edge| {
+        let mut needed = DVec2::ZERO;
+        for edge in vertex.out_edges() {
             let corner = maker.corners().index(edge.face().fix().index());
             let centre = maker.corners().at(corner, [0; 2]);
-            edge.to().data().seed != FAR && is_covered(centre, centre.distance(at))
-        })
-    })
+            let radius = centre.distance(at);
+            let beyond = (radius - centre).max(centre + radius - period);
+            needed = needed.max(beyond);
+        }
+        needed
+    };
+    let all = vertices.par_iter().flatten().map(of_vertex);
+    all.reduce(|| DVec2::ZERO, DVec2::max)
 }

@@ -2,8 +2,11 @@
 
 pub mod cell_fields;
 pub mod cell_value;
+mod division;
 pub(in crate::nodes) mod found;
 mod ground;
 pub mod per_cell;
 pub mod region_cells;
+pub mod split_cells;
 pub mod square_packing;
+pub mod voronoi_split;
