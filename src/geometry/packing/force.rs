@@ -66,21 +66,31 @@ impl Force {
     }
 
     /// The sum ψ of the cubics at a point in the particle's frame, in stones.
-    pub(crate) fn strength(&self, point: DVec2) -> f64 {
-        let corners = self.corners[..self.count].iter();
-        let of_corners: f64 = corners
-            .map(|corner| cubic(self.inverse * point.distance(*corner)))
-            .sum();
-        cubic(point.length()) + CORNER * of_corners
+    #[cfg(test)]
+    fn strength(&self, point: DVec2) -> f64 {
+        cubic(point.length()) + self.of_corners(point)
+    }
+
+    /// The share of the corners in the sum.
+    fn of_corners(&self, point: DVec2) -> f64 {
+        let mut sum = 0.0;
+        for corner in &self.corners[..self.count] {
+            let square = self.inverse * self.inverse * point.distance_squared(*corner);
+            // Most corners are too far away, so their roots are not taken.
+            if square < 2.25 {
+                sum += (1.25 * square.sqrt() - 2.375) * square + 1.125;
+            }
+        }
+        CORNER * sum
     }
 
     /// The force on another particle at a point in the particle's frame, in stones; none in its very middle.
     pub(crate) fn at(&self, point: DVec2) -> DVec2 {
         match self.law {
             Law::Radial => {
-                let square = point.length_squared();
-                if square > 0.0 {
-                    self.strength(point) * point / square.sqrt()
+                let distance = point.length();
+                if distance > 0.0 {
+                    point * ((cubic(distance) + self.of_corners(point)) / distance)
                 } else {
                     DVec2::ZERO
                 }
