@@ -15,7 +15,7 @@ const DAMPING: f64 = 1.5;
 const AT_REST: f64 = 1e-3;
 
 /// How much farther than the force reaches neighbours are listed, in stones.
-const SKIN: f64 = 0.25;
+const SKIN: f64 = 0.16;
 
 /// Steps after which directions are read anew.
 const TURNED: usize = 8;
