@@ -134,10 +134,7 @@ mod tests {
                 let found = nearest_turn(direction, frame, symmetry);
                 assert!(frame.angle_to(found).abs() <= 0.5 * part + 1e-9);
                 let turns = direction.angle_to(found) / part;
-                assert!(
-                    (turns - turns.round()).abs() < 1e-9,
-                    "{symmetry}: {turns}"
-                );
+                assert!((turns - turns.round()).abs() < 1e-9, "{symmetry}: {turns}");
             }
         }
     }
