@@ -5,6 +5,7 @@ mod box_tree;
 pub(crate) mod cells;
 pub(crate) mod heights;
 pub(crate) mod hierarchy;
+pub(crate) mod inset;
 pub(crate) mod level_surface;
 pub(crate) mod mesh;
 pub(crate) mod nurbs;

@@ -9,6 +9,7 @@ pub mod output;
 pub mod partition;
 mod picture;
 mod random;
+pub mod region;
 pub mod rings;
 pub mod shape;
 pub mod stone;
@@ -74,9 +75,16 @@ pub static KINDS: &[&Kind] = &[
     &partition::cell_value::KIND,
     &partition::per_cell::KIND,
     &partition::region_cells::KIND,
-    &partition::split_cells::KIND,
     &partition::voronoi_split::KIND,
+    &partition::split_cells::KIND,
     &surface::inlay::KIND,
+    &region::region::KIND,
+    &region::region_shape::KIND,
+    &region::region_from_file::KIND,
+    &region::region_from_mesh::KIND,
+    &region::combine_regions::KIND,
+    &region::grow_region::KIND,
+    &region::region_field::KIND,
 ];
 
 /// The kind called `name`.

@@ -35,6 +35,8 @@ impl Workshop {
             "spot/spot.obj",
             "bowl/bowl.stl",
             "teapot/teapot.txt",
+            "outlines/fischmarktplatz.geojson",
+            "outlines/sechselaeutenplatz.geojson",
         ] {
             files.insert(Path::new(folder).join(asset), asset_bytes(asset));
         }

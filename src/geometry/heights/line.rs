@@ -9,6 +9,8 @@ pub(super) struct Line {
     /// Place and direction in cells.
     origin: DVec2,
     direction: DVec2,
+    /// 1 / direction.
+    inverse: DVec2,
 }
 
 /// A part of a line.
@@ -29,22 +31,33 @@ pub(super) enum Way {
     End,
 }
 
+/// What is in a square.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Holds {
+    /// A single cell.
+    Cell([usize; 2]),
+    /// Many cells with this greatest height.
+    Many(f64),
+}
+
 /// What lies below a part of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Square {
     pub(super) stretch: Stretch,
-    /// The greatest height in it.
-    pub(super) greatest: f64,
-    /// Its only cell, if it has one.
-    pub(super) cell: Option<[usize; 2]>,
+    /// Whether the stretch begins here.
+    pub(super) is_first: bool,
+    /// What is in it.
+    pub(super) holds: Holds,
 }
 
 impl Line {
     /// The line through a place; distances along it count in lengths of `direction`.
     pub(super) fn new(heights: &Heights, origin: DVec2, direction: DVec2) -> Line {
+        let direction = direction / heights.cell;
         Line {
             origin: origin / heights.cell,
-            direction: direction / heights.cell,
+            direction,
+            inverse: direction.recip(),
         }
     }
 
@@ -68,6 +81,7 @@ impl Line {
 
     /// Shows the squares below a stretch in their order to `choose`, beginning with one of `2^level` cells a side, or
     /// with the largest.
+    #[inline]
     pub(super) fn walk(
         &self,
         heights: &Heights,
@@ -87,8 +101,11 @@ impl Line {
                     from,
                     to: to.min(whole.to),
                 },
-                greatest: heights.greatest(cell, level),
-                cell: (level == 0).then_some(cell),
+                is_first: from == whole.from,
+                holds: match level {
+                    0 => Holds::Cell(cell),
+                    _ => Holds::Many(heights.greatest(cell, level)),
+                },
             };
             match choose(&square) {
                 Way::End => return,
@@ -110,6 +127,7 @@ impl Line {
     }
 
     /// The cell at a distance; on the border of two the one that lies ahead.
+    #[inline]
     fn first_cell(&self, heights: &Heights, axis: usize, distance: f64) -> usize {
         let place = self.origin[axis] + self.direction[axis] * distance;
         let back = f64::from(u8::from(
@@ -119,6 +137,7 @@ impl Line {
     }
 
     /// Where the line leaves the square around a cell, and across which axis.
+    #[inline]
     fn leaving(&self, cell: [usize; 2], level: usize) -> (f64, usize) {
         let distance = |axis: usize| {
             let direction = self.direction[axis];
@@ -126,7 +145,7 @@ impl Line {
             let border = ((cell[axis] >> level) + ahead) << level;
             match direction == 0.0 {
                 true => f64::INFINITY,
-                false => (border as f64 - self.origin[axis]) / direction,
+                false => (border as f64 - self.origin[axis]) * self.inverse[axis],
             }
         };
         let (x, y) = (distance(0), distance(1));
@@ -134,6 +153,7 @@ impl Line {
     }
 
     /// The cell behind the border of a square; it stays within the square along the other axis.
+    #[inline]
     fn next(
         &self,
         heights: &Heights,
@@ -158,6 +178,7 @@ impl Line {
 
 impl Heights {
     /// The heights along a line in a cell: those at distance 0, and how they grow with distance and with its square.
+    #[inline]
     pub(super) fn along(&self, cell: [usize; 2], line: &Line) -> [f64; 3] {
         let [a, b, c, d] = self.around(cell);
         let (right, up, both) = (b - a, c - a, a - b - c + d);

@@ -1,7 +1,7 @@
 //! Where a ray first meets a surface of heights.
 
 use super::Heights;
-use super::line::{Line, Square, Stretch, Way};
+use super::line::{Holds, Line, Stretch, Way};
 use crate::geometry::hierarchy::Ray;
 use glam::DVec2;
 
@@ -23,16 +23,14 @@ impl Heights {
         let mut found = None;
         line.walk(self, (everything, usize::MAX), |square| {
             let Stretch { from, to } = square.stretch;
-            if above(from).min(above(to)) > square.greatest {
-                return Way::Past;
-            }
-            let Square {
-                cell: Some(cell), ..
-            } = square
-            else {
-                return Way::Into;
+            let cell = match square.holds {
+                Holds::Many(greatest) if above(from).min(above(to)) > greatest => {
+                    return Way::Past;
+                }
+                Holds::Many(_) => return Way::Into,
+                Holds::Cell(cell) => cell,
             };
-            let [height, rise, bend] = self.along(*cell, &line);
+            let [height, rise, bend] = self.along(cell, &line);
             let met = first_root(
                 [origin.z - height, direction.z - rise, -bend],
                 &square.stretch,

@@ -10,6 +10,8 @@ mod tests;
 
 use glam::DVec2;
 
+pub(crate) use self::horizon::Rises;
+
 /// Heights over the rectangle from the origin to `size`.
 #[derive(Debug)]
 pub(crate) struct Heights {
@@ -99,6 +101,7 @@ impl Heights {
     }
 
     /// The heights of a cell's corners: two from left to right, and two above them.
+    #[inline]
     fn around(&self, [x, y]: [usize; 2]) -> [f64; 4] {
         let width = self.cells[0] + 1;
         let first = y * width + x;
@@ -112,15 +115,11 @@ impl Heights {
             .fold(f64::NEG_INFINITY, f64::max) as f32
     }
 
-    /// The greatest height over the square of `2^level` cells a side that holds a cell.
+    /// The greatest height over the square of `2^level` cells a side, at least 2, that holds a cell.
+    #[inline]
     fn greatest(&self, [x, y]: [usize; 2], level: usize) -> f64 {
-        f64::from(match level.checked_sub(1) {
-            None => self.greatest_in_cell([x, y]),
-            Some(index) => {
-                let it = &self.levels[index];
-                it.greatest[(y >> level) * it.columns + (x >> level)]
-            }
-        })
+        let it = &self.levels[level - 1];
+        f64::from(it.greatest[(y >> level) * it.columns + (x >> level)])
     }
 }
 

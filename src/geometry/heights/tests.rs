@@ -1,6 +1,6 @@
 //! Rays and horizons against a search in small steps, and where both are known.
 
-use super::Heights;
+use super::{Heights, Rises};
 use crate::geometry::hierarchy::Ray;
 use glam::{DVec2, DVec3};
 
@@ -59,6 +59,13 @@ fn rays_meet_what_small_steps_meet() {
     assert!(met > 200, "{met}");
 }
 
+/// Every rise, exactly.
+const ALL: Rises = Rises {
+    least: f64::NEG_INFINITY,
+    most: f64::INFINITY,
+    tolerance: 0.0,
+};
+
 #[test]
 fn horizons_are_those_of_small_steps() {
     let heights = rough();
@@ -77,9 +84,17 @@ fn horizons_are_those_of_small_steps() {
         let expected = (0..26_000)
             .filter_map(slope)
             .fold(f64::NEG_INFINITY, f64::max);
-        let found = heights.horizon(point, direction, f64::INFINITY);
+        let found = heights.horizon(point, direction, f64::INFINITY, &ALL);
         let is_same = found == expected || (found - expected).abs() < 5e-3 * found.abs().max(1.0);
         assert!(is_same, "{index}: {found}, {expected}");
+        let rises = Rises {
+            least: 0.1,
+            most: 0.8,
+            tolerance: 0.05,
+        };
+        let about = heights.horizon(point, direction, f64::INFINITY, &rises);
+        let is_near = about >= found.clamp(0.1, 0.8) - 0.05 && about <= found.max(0.1);
+        assert!(is_near, "{index}: {about}, {found}");
     }
 }
 
@@ -92,18 +107,18 @@ fn a_wall_is_seen_under_its_height_over_its_distance() {
         DVec2::new(10.0, 4.0),
         (0..55).map(height).collect(),
     );
-    let at = |x: f64| heights.horizon(DVec3::new(x, 1.3, 0.0), DVec2::X, f64::INFINITY);
+    let at = |x: f64| heights.horizon(DVec3::new(x, 1.3, 0.0), DVec2::X, f64::INFINITY, &ALL);
     assert!((at(2.0) - 0.5).abs() < 1e-12);
     assert!((at(-14.0) - 0.1).abs() < 1e-12, "from before the rectangle");
     assert_eq!(
         heights
-            .horizon(DVec3::new(2.0, 1.3, 0.0), DVec2::X, 2.5)
+            .horizon(DVec3::new(2.0, 1.3, 0.0), DVec2::X, 2.5, &ALL)
             .abs(),
         0.0
     );
     assert_eq!(at(10.0), f64::NEG_INFINITY);
     // From the rectangle's far side one looks back over the top.
-    let back = heights.horizon(DVec3::new(10.0, 1.3, 4.0), -DVec2::X, f64::INFINITY);
+    let back = heights.horizon(DVec3::new(10.0, 1.3, 4.0), -DVec2::X, f64::INFINITY, &ALL);
     assert!((back + 0.4).abs() < 1e-12, "{back}");
 }
 

@@ -62,6 +62,25 @@ impl Lattice {
         first: &[&[DVec2]],
         second: &[&[DVec2]],
     ) -> Vec<Polygon> {
+        self.computed(operation, FillRule::NonZero, first, second)
+    }
+
+    /// The polygons that rings fill: what they wind around an odd number of times, or other than 0 times.
+    pub(crate) fn filled(self, rings: &[&[DVec2]], even_odd: bool) -> Vec<Polygon> {
+        let rule = match even_odd {
+            true => FillRule::EvenOdd,
+            false => FillRule::NonZero,
+        };
+        self.computed(Operation::Union, rule, rings, &[])
+    }
+
+    fn computed(
+        self,
+        operation: Operation,
+        fill: FillRule,
+        first: &[&[DVec2]],
+        second: &[&[DVec2]],
+    ) -> Vec<Polygon> {
         let rule = match operation {
             Operation::Union => OverlayRule::Union,
             Operation::Intersection => OverlayRule::Intersect,
@@ -84,7 +103,7 @@ impl Lattice {
             let known = known.get(place).copied();
             known.unwrap_or_else(|| self.point(*place))
         };
-        let shapes = overlay.overlay(rule, FillRule::NonZero);
+        let shapes = overlay.overlay(rule, fill);
         let rings = shapes.iter().map(|shape| {
             let ring = |ring: &Vec<IntPoint<i64>>| ring.iter().map(back).collect();
             shape.iter().map(ring).collect::<Vec<Vec<DVec2>>>()

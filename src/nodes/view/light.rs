@@ -392,7 +392,7 @@ impl Sky {
 
 /// Slices around a point that are as many as directions on the way around an even pattern of `count`.
 fn slices(count: usize) -> Vec<DVec2> {
-    let count = (2.0 * (count as f64).sqrt()).round().clamp(8.0, 256.0) as usize;
+    let count = (1.5 * (count as f64).sqrt()).round().clamp(8.0, 256.0) as usize;
     let slice = |index: usize| {
         let angle = (index as f64 + 0.5) * (2.0 * PI / count as f64);
         DVec2::new(libm::cos(angle), libm::sin(angle))

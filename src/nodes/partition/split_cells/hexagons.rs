@@ -1,48 +1,37 @@
 //! Regular hexagons.
 
-use super::laid::{Laid, steps};
+use super::ground::{Laid, Tile, Window};
 use glam::DVec2;
 
-/// Hexagons that stand on a corner, in rows.
-pub(super) struct Hexagons {
-    /// Distance of opposite sides.
-    width: f64,
-    /// Length of a side.
-    side: f64,
-}
-
-impl Hexagons {
-    pub(super) fn new(width: f64) -> Hexagons {
-        Hexagons {
-            width,
-            side: width / 3.0_f64.sqrt(),
-        }
-    }
-
-    pub(super) fn area(&self) -> f64 {
-        1.5 * self.width * self.side
-    }
-
-    pub(super) fn repeat(&self) -> DVec2 {
-        DVec2::new(self.width, 3.0 * self.side)
-    }
-
-    pub(super) fn cover(&self, [low, high]: [DVec2; 2]) -> Vec<Laid> {
-        let mut laid = vec![];
-        let step = 1.5 * self.side;
-        // Corners in half widths and half sides, so that neighbours have the same bits.
-        let around = [(0, -2), (1, -1), (1, 1), (0, 2), (-1, 1), (-1, -1)];
-        for row in steps(low.y - self.side, high.y + self.side, step) {
-            for column in steps(low.x - self.width, high.x + self.width, self.width) {
-                let middle = (2 * column + row.rem_euclid(2), 3 * row);
-                let corner = |(x, y): (i32, i32)| {
-                    let (x, y) = (f64::from(middle.0 + x), f64::from(middle.1 + y));
-                    DVec2::new(0.5 * self.width * x, 0.5 * self.side * y)
-                };
-                let corners = around.map(corner).to_vec();
-                laid.push(Laid::straight(corners, DVec2::X, [row, column]));
+/// Lays hexagons with this distance from flat to flat, flats up and down the columns.
+pub(super) fn lay(window: &Window, width: f64) -> Laid {
+    let along = window.steps(0, 0.5 * width, 2);
+    let across = window.steps(1, width * 0.75_f64.sqrt(), 2);
+    // Corners lie on a lattice of half widths and of thirds of rows.
+    let at = |half: i64, third: i64| {
+        DVec2::new(half as f64 * along.step, third as f64 * across.step / 3.0)
+    };
+    let mut tiles = vec![];
+    for row in across.first..across.end + i64::from(window.period.is_none()) {
+        for half in along.first..along.end + i64::from(window.period.is_none()) {
+            if (half + row).rem_euclid(2) == 1 {
+                continue;
+            }
+            let third = 3 * row;
+            let around = [(1, -1), (1, 1), (0, 2), (-1, 1), (-1, -1), (0, -2)];
+            let corners: Vec<DVec2> = around
+                .iter()
+                .map(|(x, y)| at(half + x, third + y))
+                .collect();
+            let values = vec![
+                ("row", row as f64),
+                ("column", (half - row).div_euclid(2) as f64),
+                ("length", 2.0 * along.step),
+            ];
+            if window.is_near(at(half - 1, third - 2), at(half + 1, third + 2)) {
+                tiles.push(Tile::straight(corners, DVec2::X, values));
             }
         }
-        laid
     }
+    Laid::over(tiles, [along.stretch, across.stretch])
 }

@@ -1,103 +1,230 @@
-//! Parts that are split across their length again and again: joints end at older joints.
+//! Splits in two, again and again: each new border ends at older ones, as cracks and folds do.
+//!
+//! The largest cell is split next, across the axis in which it is longest by the second moments of its area.
 
-use super::laid::Laid;
+use super::super::division::Plot;
+use super::ground::{Laid, Tile, Window};
 use crate::node::{Failure, Inputs};
 use crate::nodes::random::Random;
 use glam::DVec2;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
-/// Splits of splits.
-pub(super) struct Recursive {
-    /// Length and width of a piece, on the whole.
-    pub(super) piece: DVec2,
-    /// Where a part is split, in parts of its length.
-    at: [f64; 2],
-    /// How slanted a split is at most, in radians.
-    slant: f64,
+/// How cells are split.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Splits {
+    /// The mean area of a cell in mm².
+    area: f64,
+    position: [f64; 2],
+    turn: f64,
 }
 
-/// A part is split as long as it is larger than a random multiple of a piece, from so much to twice as much.
-const LARGEST: f64 = 0.85;
-
-impl Recursive {
-    pub(super) fn read(
-        inputs: &Inputs<'_>,
-        piece: DVec2,
-        slant: f64,
-    ) -> Result<Recursive, Failure> {
-        let at = inputs.get("lengths").map(|_| inputs.pair("lengths"));
-        let at = at.unwrap_or([0.35, 0.65]);
-        if !(at[0] <= at[1] && at[1] <= 0.95) {
+impl Splits {
+    /// What the inputs state.
+    ///
+    /// # Errors
+    /// If the range of positions is none.
+    pub(super) fn read(inputs: &Inputs<'_>) -> Result<Splits, Failure> {
+        let position = inputs.pair("position");
+        if position[0] > position[1] {
             let message = format!(
-                "a part cannot be split from {} to {} of its length",
-                at[0], at[1]
+                "expected a range from low to high, found from {} to {}",
+                position[0], position[1]
             );
-            return Err(Failure::of_input("lengths", message)
-                .with_hint("write numbers from 0.05 to 0.95, the smaller first"));
+            return Err(Failure::of_input("position", message));
         }
-        Ok(Recursive { piece, at, slant })
-    }
-
-    /// Parts of a box.
-    pub(super) fn cover(&self, [low, high]: [DVec2; 2], random: &mut Random) -> Vec<Laid> {
-        let whole = Laid::rectangle(low, high - low, [0, 0]).corners;
-        let mut waiting = vec![(whole, 0)];
-        let mut laid = vec![];
-        while let Some((corners, depth)) = waiting.pop() {
-            let size = self.size(&corners);
-            let limit = LARGEST * self.piece.x * self.piece.y * (1.0 + f64::from(random.share()));
-            let is_small = size.x * size.y <= limit || depth >= 64;
-            match is_small {
-                true => {
-                    let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
-                    laid.push(Laid::straight(corners, along, [depth, laid.len() as i32]));
-                }
-                false => {
-                    let halves = self.split(&corners, size, random);
-                    waiting.extend(halves.map(|half| (half, depth + 1)));
-                }
-            }
-        }
-        laid
-    }
-
-    /// Width and height of the box around a part.
-    fn size(&self, corners: &[DVec2]) -> DVec2 {
-        let [low, high] = around(corners);
-        high - low
-    }
-
-    /// Both parts of a convex part, split across what is long of it as a piece is.
-    fn split(&self, corners: &[DVec2], size: DVec2, random: &mut Random) -> [Vec<DVec2>; 2] {
-        let is_long = size.x / self.piece.x >= size.y / self.piece.y;
-        let mut draw = |low: f64, high: f64| low + (high - low) * f64::from(random.share());
-        let share = draw(self.at[0], self.at[1]);
-        let slant = draw(-self.slant, self.slant);
-        let [low, high] = around(corners);
-        let middle = 0.5 * (low + high);
-        let (point, normal) = match is_long {
-            true => (DVec2::new(low.x + share * size.x, middle.y), DVec2::X),
-            false => (DVec2::new(middle.x, low.y + share * size.y), DVec2::Y),
-        };
-        let normal = DVec2::new(libm::cos(slant), libm::sin(slant)).rotate(normal);
-        let side = |corner: DVec2| normal.dot(corner - point);
-        let mut halves = [vec![], vec![]];
-        for (index, corner) in corners.iter().enumerate() {
-            let next = corners[(index + 1) % corners.len()];
-            let (here, there) = (side(*corner), side(next));
-            halves[usize::from(here >= 0.0)].push(*corner);
-            if (here < 0.0) != (there < 0.0) {
-                let between = *corner + (next - *corner) * (here / (here - there));
-                halves.iter_mut().for_each(|half| half.push(between));
-            }
-        }
-        halves
+        let width = inputs.number("width");
+        Ok(Splits {
+            area: width * width,
+            position,
+            turn: inputs.number("turn").to_radians(),
+        })
     }
 }
 
-fn around(corners: &[DVec2]) -> [DVec2; 2] {
-    corners
+/// Splits a plot: its own outline if that is convex, else the window around it.
+pub(super) fn lay(
+    plot: &Plot,
+    window: &Window,
+    splits: Splits,
+    mut random: Random,
+    go_on: &mut dyn FnMut() -> Result<(), Failure>,
+) -> Result<Laid, Failure> {
+    let own = convex_outline(plot, window);
+    let fit = own.is_some();
+    let outline = own.unwrap_or_else(|| {
+        let [low, high] = [window.low, window.high];
+        vec![
+            low,
+            DVec2::new(high.x, low.y),
+            high,
+            DVec2::new(low.x, high.y),
+        ]
+    });
+    let first = Part::new(outline, 0);
+    let count = (first.area / splits.area).round().max(1.0) as usize;
+    let mut parts = BinaryHeap::from([first]);
+    while parts.len() < count {
+        if parts.len().is_multiple_of(1024) {
+            go_on()?;
+        }
+        let Some(largest) = parts.pop() else { break };
+        let axis = largest.axis();
+        let turn = random.between([-splits.turn, splits.turn]);
+        let across = axis
+            .perp()
+            .rotate(DVec2::new(libm::cos(turn), libm::sin(turn)));
+        let share = random.between(splits.position);
+        match largest.split(axis, across, share) {
+            Some(two) => parts.extend(two),
+            None => {
+                parts.push(largest);
+                break;
+            }
+        }
+    }
+    let tiles = parts.into_sorted_vec().into_iter().rev().map(|part| {
+        let axis = part.axis();
+        let depth = f64::from(part.depth);
+        let values = vec![
+            ("depth", depth),
+            ("length", part.extent(axis)[1] - part.extent(axis)[0]),
+        ];
+        Tile::straight(part.corners, axis, values)
+    });
+    Ok(Laid {
+        tiles: tiles.collect(),
+        stretch: DVec2::ONE,
+        fit: fit || window.period.is_some(),
+    })
+}
+
+/// The outline of a plot in the pattern's own coordinates, if it has no holes and no corner inwards.
+fn convex_outline(plot: &Plot, window: &Window) -> Option<Vec<DVec2>> {
+    let [polygon] = &plot.region.polygons[..] else {
+        return None;
+    };
+    if plot.period.is_some() || !polygon.holes.is_empty() {
+        return None;
+    }
+    let corners: Vec<DVec2> = polygon
+        .outline
         .iter()
-        .fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| {
-            [low.min(*at), high.max(*at)]
+        .map(|at| window.axes().seen(*at))
+        .collect();
+    let count = corners.len();
+    let turns_left = |index: usize| {
+        let [a, b, c] = [0, 1, 2].map(|step| corners[(index + step) % count]);
+        (b - a).perp_dot(c - b) >= -1e-12 * (b - a).length() * (c - b).length()
+    };
+    (0..count).all(turns_left).then_some(corners)
+}
+
+/// A convex part of what is divided.
+struct Part {
+    corners: Vec<DVec2>,
+    area: f64,
+    depth: u32,
+}
+
+impl Part {
+    fn new(corners: Vec<DVec2>, depth: u32) -> Part {
+        let area = crate::geometry::polygon::measure(&corners, &[]).area;
+        Part {
+            corners,
+            area,
+            depth,
+        }
+    }
+
+    /// The direction in which it is longest.
+    fn axis(&self) -> DVec2 {
+        let [xx, xy, yy] = moments(&self.corners);
+        let angle = 0.5 * libm::atan2(2.0 * xy, xx - yy);
+        // Of a square any direction is as good: the first axis.
+        if (xx - yy).abs() + xy.abs() < 1e-9 * (xx + yy) {
+            return DVec2::X;
+        }
+        DVec2::new(libm::cos(angle), libm::sin(angle))
+    }
+
+    /// From where to where it reaches along a direction.
+    fn extent(&self, along: DVec2) -> [f64; 2] {
+        let places = self.corners.iter().map(|corner| corner.dot(along));
+        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+            [low.min(at), high.max(at)]
         })
+    }
+
+    /// The two parts on both sides of a line in the direction `across`, through a point of the axis.
+    fn split(&self, axis: DVec2, across: DVec2, share: f64) -> Option<[Part; 2]> {
+        let [low, high] = self.extent(axis);
+        let beside = self.extent(axis.perp());
+        let through =
+            axis * (low + share * (high - low)) + axis.perp() * 0.5 * (beside[0] + beside[1]);
+        let side = |at: DVec2| across.perp_dot(at - through);
+        let (mut left, mut right) = (vec![], vec![]);
+        for (index, from) in self.corners.iter().enumerate() {
+            let to = self.corners[(index + 1) % self.corners.len()];
+            let (here, there) = (side(*from), side(to));
+            if here >= 0.0 {
+                left.push(*from);
+            }
+            if here <= 0.0 {
+                right.push(*from);
+            }
+            if here * there < 0.0 {
+                let at = *from + (to - *from) * (here / (here - there));
+                left.push(at);
+                right.push(at);
+            }
+        }
+        let parts = [left, right].map(|corners| Part::new(corners, self.depth + 1));
+        parts
+            .iter()
+            .all(|part| part.corners.len() >= 3 && part.area > 0.0)
+            .then_some(parts)
+    }
+}
+
+/// Second moments of the area around its centre, all over the same factor.
+fn moments(corners: &[DVec2]) -> [f64; 3] {
+    let centre = crate::geometry::polygon::measure(corners, &[]).centre();
+    let mut moments = [0.0; 3];
+    for (index, from) in corners.iter().enumerate() {
+        let [a, b] = [
+            *from - centre,
+            corners[(index + 1) % corners.len()] - centre,
+        ];
+        let cross = a.perp_dot(b);
+        moments[0] += cross * (a.x * a.x + a.x * b.x + b.x * b.x);
+        moments[1] += cross * (a.x * b.y + 2.0 * a.x * a.y + 2.0 * b.x * b.y + b.x * a.y) * 0.5;
+        moments[2] += cross * (a.y * a.y + a.y * b.y + b.y * b.y);
+    }
+    moments
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Part) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Part {}
+
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Part) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Part {
+    /// By area, then by place.
+    fn cmp(&self, other: &Part) -> Ordering {
+        let [own, its] = [self, other].map(|part| part.corners[0]);
+        let by_area = self.area.total_cmp(&other.area);
+        by_area
+            .then(own.x.total_cmp(&its.x))
+            .then(own.y.total_cmp(&its.y))
+    }
 }

@@ -1,187 +1,128 @@
-//! Rows of bricks or boards.
+//! Boards and bricks in rows, each row moved against the last.
 
-use super::laid::{Closed, Laid, steps};
+use super::ground::{Laid, Steps, Tile, Window};
 use crate::node::{Failure, Inputs};
 use crate::nodes::random::Random;
 use glam::DVec2;
 
-/// Rows, one above the other.
+/// How rows are moved against each other.
+pub(super) const BONDS: [&str; 4] = ["running", "third", "stack", "random"];
+
+/// What rows are made of.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Rows {
-    /// Length and width of a piece.
-    pub(super) piece: DVec2,
     bond: &'static str,
+    /// Shares of the length.
     lengths: [f64; 2],
-    widths: [f64; 2],
 }
 
 impl Rows {
-    pub(super) fn read(
-        inputs: &Inputs<'_>,
-        piece: DVec2,
-        period: Option<DVec2>,
-    ) -> Result<Rows, Failure> {
-        let lengths = inputs.get("lengths").map(|_| inputs.pair("lengths"));
-        let rows = Rows {
-            piece,
-            bond: inputs.choice("bond"),
-            lengths: lengths.unwrap_or([1.0, 1.0]),
-            widths: inputs.pair("widths"),
-        };
-        for (input, [low, high]) in [("lengths", rows.lengths), ("widths", rows.widths)] {
-            if low > high {
-                let message = format!("`{input}` goes from {low} down to {high}");
-                return Err(
-                    Failure::of_input(input, message).with_hint("write the smaller number first")
-                );
-            }
+    /// What the inputs state.
+    ///
+    /// # Errors
+    /// If the range of the lengths is none.
+    pub(super) fn read(inputs: &Inputs<'_>) -> Result<Rows, Failure> {
+        let lengths = inputs.pair("lengths");
+        if lengths[0] > lengths[1] {
+            let message = format!(
+                "expected a range from low to high, found from {} to {}",
+                lengths[0], lengths[1]
+            );
+            return Err(Failure::of_input("lengths", message));
         }
-        if let Some(period) = period
-            && (period.x < 0.5 * piece.x || period.y < 0.5 * piece.y)
-        {
-            return Err(Failure::of_input(
-                "period",
-                "the period is smaller than half a piece",
-            ));
-        }
-        Ok(rows)
+        let bond = inputs.choice("bond");
+        Ok(Rows { bond, lengths })
     }
 
-    /// How far a row is shifted, in pieces.
-    fn shift(&self, row: i32, random: &mut Random) -> f64 {
+    /// Rows that are not moved, of equal boards.
+    pub(super) fn grid() -> Rows {
+        Rows {
+            bond: "stack",
+            lengths: [1.0; 2],
+        }
+    }
+
+    /// After how many rows the bond repeats.
+    fn cycle(self) -> i64 {
         match self.bond {
-            "stack" => 0.0,
-            "running" => f64::from(row.rem_euclid(2)) / 2.0,
-            "third" => f64::from(row.rem_euclid(3)) / 3.0,
-            _ => f64::from(random.share()),
+            "running" => 2,
+            "third" => 3,
+            _ => 1,
         }
     }
+}
 
-    fn drawn([low, high]: [f64; 2], random: &mut Random) -> f64 {
-        low + (high - low) * f64::from(random.share())
-    }
-
-    /// Rows that cover a box.
-    pub(super) fn cover(&self, [low, high]: [DVec2; 2], random: &mut Random) -> Vec<Laid> {
-        let mut laid = vec![];
-        let is_even = self.widths[0] == self.widths[1];
-        let width = self.piece.y * self.widths[0];
-        let first = if is_even {
-            *steps(low.y, high.y, width).start()
+/// Lays boards in rows.
+pub(super) fn lay(
+    window: &Window,
+    board: DVec2,
+    rows: Rows,
+    random: Random,
+    go_on: &mut dyn FnMut() -> Result<(), Failure>,
+) -> Result<Laid, Failure> {
+    let across = window.steps(1, board.y, rows.cycle());
+    let mean = board.x * 0.5 * (rows.lengths[0] + rows.lengths[1]);
+    let along = window.steps(0, mean, 1);
+    let mut tiles = vec![];
+    for row in across.first..across.end {
+        go_on()?;
+        let mut random = random.of_item(row as u32);
+        let moved = match rows.bond {
+            "random" => f64::from(random.share()),
+            _ => row.rem_euclid(rows.cycle()) as f64 / rows.cycle() as f64,
+        };
+        let joints = joints(window, along, rows.lengths, moved, &mut random);
+        let [low, high] = [row, row + 1].map(|row| row as f64 * across.step);
+        let first = if rows.lengths[0] == rows.lengths[1] {
+            along.first
         } else {
             0
         };
-        // Rows of many widths begin at the box, those of one at the origin.
-        let mut bottom = if is_even {
-            f64::from(first) * width
-        } else {
-            low.y
-        };
-        let mut row = first;
-        while bottom < high.y {
-            let top = match is_even {
-                true => f64::from(row + 1) * width,
-                false => bottom + self.piece.y * Rows::drawn(self.widths, random),
-            };
-            self.row([low.x, high.x], [bottom, top], row, random, &mut laid);
-            (bottom, row) = (top, row + 1);
-        }
-        laid
-    }
-
-    fn row(
-        &self,
-        [left, right]: [f64; 2],
-        [bottom, top]: [f64; 2],
-        row: i32,
-        random: &mut Random,
-        laid: &mut Vec<Laid>,
-    ) {
-        let is_even = self.lengths[0] == self.lengths[1];
-        let length = self.piece.x * self.lengths[0];
-        let shift = self.shift(row, random);
-        let column = ((left / length) - shift).floor() as i32;
-        let mut column = if is_even { column } else { 0 };
-        let at = |column: i32| (f64::from(column) + shift) * length;
-        let mut from = if is_even {
-            at(column)
-        } else {
-            left - shift * self.piece.x
-        };
-        while from < right {
-            let to = match is_even {
-                true => at(column + 1),
-                false => from + self.piece.x * Rows::drawn(self.lengths, random),
-            };
-            let size = DVec2::new(to - from, top - bottom);
-            let corners = vec![
-                DVec2::new(from, bottom),
-                DVec2::new(to, bottom),
-                DVec2::new(to, top),
-                DVec2::new(from, top),
+        for (column, ends) in (first..).zip(joints.windows(2)) {
+            let values = vec![
+                ("row", row as f64),
+                ("column", column as f64),
+                ("length", ends[1] - ends[0]),
             ];
-            let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
-            laid.push(Laid::straight(corners, along, [row, column]));
-            (from, column) = (to, column + 1);
-        }
-    }
-
-    /// Rows that close after a period.
-    pub(super) fn closed(&self, period: DVec2, random: &mut Random) -> Closed {
-        let mean = |[low, high]: [f64; 2]| 0.5 * (low + high);
-        let wanted = self.piece * DVec2::new(mean(self.lengths), mean(self.widths));
-        let multiple = match self.bond {
-            "running" => 2.0,
-            "third" => 3.0,
-            _ => 1.0,
-        };
-        let counts = DVec2::new(
-            (period.x / wanted.x).round().max(1.0),
-            (period.y / wanted.y / multiple).round().max(1.0) * multiple,
-        );
-        let heights = Rows::summing_to(period.y, counts.y as usize, self.widths, random);
-        let mut laid = vec![];
-        let mut bottom = 0.0;
-        for (row, top) in heights.into_iter().enumerate() {
-            let ends = Rows::summing_to(period.x, counts.x as usize, self.lengths, random);
-            let shift = self.shift(row as i32, random) * period.x / counts.x;
-            let mut from = 0.0;
-            for (column, to) in ends.into_iter().enumerate() {
-                let low = DVec2::new(from + shift, bottom);
-                let high = DVec2::new(to + shift, top);
-                let corners = vec![
-                    low,
-                    DVec2::new(high.x, low.y),
-                    high,
-                    DVec2::new(low.x, high.y),
-                ];
-                let size = high - low;
-                let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
-                laid.push(Laid::straight(corners, along, [row as i32, column as i32]));
-                from = to;
+            let [low, high] = [DVec2::new(ends[0], low), DVec2::new(ends[1], high)];
+            if window.is_near(low, high) {
+                tiles.push(Tile::rectangle(low, high, DVec2::X, values));
             }
-            bottom = top;
-        }
-        Closed {
-            pieces: laid,
-            stretched: period / counts / wanted,
         }
     }
+    Ok(Laid::over(tiles, [along.stretch, across.stretch]))
+}
 
-    /// Where `count` parts of random lengths end that fill `total`.
-    fn summing_to(total: f64, count: usize, range: [f64; 2], random: &mut Random) -> Vec<f64> {
-        let parts: Vec<f64> = (0..count).map(|_| Rows::drawn(range, random)).collect();
-        let sum: f64 = parts.iter().sum();
-        let mut end = 0.0;
-        let mut ends: Vec<f64> = parts
-            .iter()
-            .map(|part| {
-                end += part;
-                total * (end / sum)
-            })
-            .collect();
-        if let Some(last) = ends.last_mut() {
-            *last = total;
-        }
-        ends
+/// Where the boards of a row begin, and where the last ends.
+fn joints(
+    window: &Window,
+    along: Steps,
+    lengths: [f64; 2],
+    moved: f64,
+    random: &mut Random,
+) -> Vec<f64> {
+    if lengths[0] == lengths[1] {
+        let joint = |column: i64| (column as f64 + moved) * along.step;
+        return (along.first..=along.end).map(joint).collect();
     }
+    let share = 2.0 / (lengths[0] + lengths[1]);
+    let mut length = || along.step * share * random.between(lengths);
+    let Some(period) = window.period else {
+        let mut joints = vec![window.low.x - moved.max(0.01) * length()];
+        while joints[joints.len() - 1] < window.high.x {
+            joints.push(joints[joints.len() - 1] + length());
+        }
+        return joints;
+    };
+    let lengths: Vec<f64> = (along.first..along.end).map(|_| length()).collect();
+    let scale = period.x / lengths.iter().sum::<f64>();
+    let start = moved * period.x;
+    let mut joints = vec![start];
+    let mut sum = 0.0;
+    for length in &lengths[..lengths.len() - 1] {
+        sum += length * scale;
+        joints.push(start + sum);
+    }
+    joints.push(start + period.x);
+    joints
 }

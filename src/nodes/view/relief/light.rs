@@ -6,7 +6,7 @@
 //! corner's own slope). Corners are looked at when they are first asked for, in tiles.
 
 use super::Relief;
-use crate::geometry::heights::Heights;
+use crate::geometry::heights::{Heights, Rises};
 use crate::nodes::view::light::{Light, Seen, Sky, SkyLight, Turn};
 use crate::nodes::view::scene::{Point, is_cut_face};
 use glam::{DVec2, DVec3};
@@ -21,6 +21,9 @@ const OF_SKY: usize = 8;
 
 /// Strips into which the face of a wide light is cut.
 const STRIPS: usize = 7;
+
+/// What rises by less hides hardly anything of the sky: a share of its square.
+const LOW: f64 = 0.06;
 
 /// Below this width a light has only one strip.
 const NARROW: f64 = 0.03;
@@ -160,8 +163,12 @@ fn around(heights: &Heights, point: DVec3, normal: DVec3, sky: &Sky) -> [Open; 2
     for direction in slices {
         let facing = normal.truncate().dot(*direction);
         let own = -facing / normal.z;
-        let rise = heights.horizon(point, *direction, f64::INFINITY);
-        let rise = rise.max(own).max(0.0);
+        let rises = Rises {
+            least: own.max(0.0),
+            most: f64::INFINITY,
+            tolerance: LOW,
+        };
+        let rise = heights.horizon(point, *direction, f64::INFINITY, &rises);
         let cosine = 1.0 / (1.0 + rise * rise).sqrt();
         let (sine, square) = (rise * cosine, cosine * cosine);
         let elevation = libm::atan(rise);
@@ -233,14 +240,34 @@ fn above(
     let Some(direction) = middle.truncate().try_normalize() else {
         return 1.0;
     };
-    let rise = heights.horizon(point, direction, furthest).max(0.0);
+    // Along the strip the light rises by `level` and comes nearer by its z.
     let level = seen.direction.truncate().length();
-    // Along the strip the light rises by `level` and comes nearer by its z: where is it as steep as the horizon?
     let forward = middle.truncate().length();
+    let limb = |up: f64| {
+        let (high, near) = (middle.z + up * level, forward - up * seen.direction.z);
+        if near > 0.0 {
+            high / near
+        } else {
+            f64::INFINITY
+        }
+    };
+    let rises = Rises {
+        least: limb(-half).max(0.0),
+        most: limb(half),
+        tolerance: 0.0,
+    };
+    if rises.most <= rises.least {
+        // A point of light, or one that has set.
+        let rises = Rises {
+            most: f64::INFINITY,
+            ..rises
+        };
+        let rise = heights.horizon(point, direction, furthest, &rises);
+        return f64::from(u8::from(rise <= rises.least && limb(half) > 0.0));
+    }
+    let rise = heights.horizon(point, direction, furthest, &rises);
+    // Where along the strip is it as steep as the horizon?
     let below = rise * forward - middle.z;
     let step = level + rise * seen.direction.z;
-    if half == 0.0 || step <= 0.0 {
-        return f64::from(u8::from(below < 0.0));
-    }
     (0.5 - 0.5 * below / (step * half)).clamp(0.0, 1.0)
 }
