@@ -18,6 +18,9 @@ const FAR: f64 = 1.5;
 /// A joint wider than this many medians is an empty place as to what is beyond.
 const WIDE: f64 = 3.0;
 
+/// How many times its usual area a stone may have.
+const ROOMY: f64 = 1.5;
+
 /// What can be said of a packing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Statistics {
@@ -30,7 +33,7 @@ pub(crate) struct Statistics {
     pub(crate) quads: f64,
     /// Standard deviation of the areas over their mean.
     pub(crate) area_variation: f64,
-    /// Share of the region that stones cover, with joints of up to three medians.
+    /// Share of the region that stones of their size cover, with joints of up to three medians.
     pub(crate) occupancy: f64,
     /// Mean width of the joints between facing edges in mm, empty places counted, and its standard deviation over the mean.
     pub(crate) joint: f64,
@@ -73,12 +76,25 @@ pub(crate) fn measure(partition: &Partition, region: &Region, field: &[DVec2]) -
         order: order(partition),
         quads: quads.count() as f64 / count as f64,
         area_variation: variance.sqrt() / mean,
-        occupancy: 1.0 - empty / whole,
+        occupancy: 1.0 - (empty + too_large(partition)) / whole,
         joint,
         joint_variation,
         overlap: ground.overlap(),
         across: across(partition, region),
     }
+}
+
+/// The area by which stones are larger than half as much again as their size asks for, in mm²: room for others.
+fn too_large(partition: &Partition) -> f64 {
+    let Some(sizes) = partition.attributes.get("size") else {
+        return 0.0;
+    };
+    let pairs = || partition.areas.iter().zip(sizes);
+    let mut shares: Vec<f64> = pairs().map(|(area, size)| area / (size * size)).collect();
+    shares.sort_unstable_by(f64::total_cmp);
+    let usual = shares[shares.len() / 2];
+    let more = pairs().map(|(area, size)| (area - ROOMY * usual * size * size).max(0.0));
+    more.sum()
 }
 
 /// After one turn in how many parts a stone looks the same.
