@@ -68,6 +68,7 @@ pub static KINDS: &[&Kind] = &[
     &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
+    &output::packing_table::KIND,
     &field::direction_field::KIND,
     &partition::square_packing::KIND,
     &partition::cell_fields::KIND,
