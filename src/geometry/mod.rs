@@ -3,6 +3,7 @@
 pub(crate) mod assemble;
 mod box_tree;
 pub(crate) mod cells;
+pub(crate) mod heights;
 pub(crate) mod hierarchy;
 pub(crate) mod level_surface;
 pub(crate) mod mesh;
@@ -12,3 +13,4 @@ pub(crate) mod polygon;
 pub mod spline;
 pub(crate) mod subdivision;
 mod tangents;
+pub(crate) mod voronoi;

@@ -70,6 +70,9 @@ pub static KINDS: &[&Kind] = &[
     &partition::cell_fields::KIND,
     &partition::cell_value::KIND,
     &partition::per_cell::KIND,
+    &partition::region_cells::KIND,
+    &partition::voronoi_split::KIND,
+    &partition::split_cells::KIND,
     &surface::inlay::KIND,
 ];
 

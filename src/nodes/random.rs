@@ -28,4 +28,22 @@ impl Random {
     pub(in crate::nodes) fn share(&mut self) -> f32 {
         (self.bits() >> 8) as f32 / 16_777_216.0
     }
+
+    /// Another stream, for one of the items that the node draws for.
+    pub(in crate::nodes) fn of_item(&self, item: u32) -> Random {
+        let mut own = Random(self.0 ^ u64::from(item).wrapping_mul(0xd6e8_feb8_6659_fd93));
+        own.bits();
+        own
+    }
+
+    /// A number of the normal distribution with mean 0 and deviation 1 (Box & Muller 1958).
+    pub(in crate::nodes) fn normal(&mut self) -> f64 {
+        let (share, turn) = (1.0 - f64::from(self.share()), f64::from(self.share()));
+        libm::sqrt(-2.0 * libm::log(share)) * libm::cos(std::f64::consts::TAU * turn)
+    }
+
+    /// A number from `low` to `high`.
+    pub(in crate::nodes) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+        low + (high - low) * f64::from(self.share())
+    }
 }

@@ -11,18 +11,20 @@ mod outline;
 mod picture;
 mod rays;
 mod record;
+mod relief;
 mod scene;
 mod shade;
+mod stage;
 
-use self::camera::{CAMERA, Camera};
-use self::light::{Disc, LIGHT, Light, SKY, Sky, Turn};
+use self::camera::CAMERA;
+use self::light::{LIGHT, SKY, Turn};
 use self::picture::{Smooth, Tone};
 use self::rays::{Illumination, Sight, Stage, seen};
-use self::record::Record;
-use self::scene::{Cut, MOST_CUTS, Point, Scene, Thing};
+use self::relief::Relief;
+use self::scene::Point;
 use self::shade::Shade;
+use self::stage::stage;
 use crate::field::{Block, Field, Kernel};
-use crate::geometry::mesh::{Open, check_closed};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::surface::material::default_of;
@@ -38,7 +40,8 @@ const CHANNEL: &str = "view";
 pub static KIND: Kind = Kind {
     name: "view",
     version: 2,
-    about: "Draws a shaded picture of a mesh and its material, cut open by planes if you like; stands in `outputs`.",
+    about: "Draws a shaded picture of a mesh and its material, cut open by planes if you like, or of a flat piece with its relief \
+            as it lies on the ground; stands in `outputs`.",
     source: "own construction; shading after Walter and others 2007, Karis 2013, Fdez-Agüera 2019",
     inputs: &[
         Input::new(
@@ -46,7 +49,12 @@ pub static KIND: Kind = Kind {
             Type::Material,
             "What it is made of: an uncut material, or a flat piece laid out by the mesh's coordinates.",
         ),
-        Input::new("on", Type::Mesh, "Its shape."),
+        Input::new(
+            "on",
+            Type::Mesh,
+            "Its shape; left out, a flat piece lies on the ground with its relief.",
+        )
+        .optional(),
         Input::new(
             "bark",
             Type::Material,
@@ -61,6 +69,20 @@ pub static KIND: Kind = Kind {
         )
         .optional()
         .range(1e-3, 1e7),
+        Input::number(
+            "relief",
+            Unit::One,
+            "What the heights of a flat piece on the ground are multiplied by; left out, 1.",
+        )
+        .optional()
+        .range(0.0, 1000.0),
+        Input::number(
+            "thickness",
+            Unit::Millimetre,
+            "From the lowest point of a flat piece down to the ground; left out, 0.03 of its mean side.",
+        )
+        .optional()
+        .range(0.0, 1e7),
         Input::new(
             "cuts",
             Type::List(&Type::Record(CUT)),
@@ -76,13 +98,13 @@ pub static KIND: Kind = Kind {
         Input::new(
             "camera",
             Type::Record(CAMERA),
-            "Where it is seen from; left out, from before the cut faces, a little from above.",
+            "Where it is seen from; left out, from before the cut faces, or the lower edge of a flat piece, a little from above.",
         )
         .optional(),
         Input::new(
             "lights",
             Type::List(&Type::Record(LIGHT)),
-            "Up to eight lights; empty is one of a studio, from the left behind the camera.",
+            "Up to eight lights; empty is one of a studio, from the left behind the camera, or a low sun over relief.",
         )
         .default("[]"),
         Input::new("sky", Type::Record(SKY), "Light from all sides.").optional(),
@@ -134,12 +156,9 @@ const CUT: &[Input] = &[
     ),
 ];
 
-/// Most lights.
-const MOST_LIGHTS: usize = 8;
-
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let pixels = inputs.pair("pixels").map(f64::round);
-    let stage = Arc::new(stage(inputs, pixels)?);
+    let stage = Arc::new(stage(inputs, build, pixels)?);
     let position = || vec![Field::position(Domain::Plane)];
     let sight = build.kernel(Sight(Arc::clone(&stage)), position());
     let light = build.kernel(Illumination(Arc::clone(&stage)), position());
@@ -154,16 +173,12 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         let height = material.channels.get("height");
         height.is_some_and(|height| height.as_constant().is_none())
     });
-    let straight_up = Point::on_plane(DVec3::ZERO, DVec3::Z, 0.0);
     let shade = Shade {
         has_bark: bark.is_some(),
-        has_relief,
+        // On the ground the relief is there itself.
+        has_relief: has_relief && stage.scene.relief.is_none(),
         background: inputs.colour("background").map(|part| part as f32),
-        open_sky: stage
-            .sky
-            .light(None, &straight_up, &Turn::at(0.0, 0.0))
-            .colour
-            .map(|part| part as f32),
+        open_sky: open_sky(&stage).map(|part| part as f32),
         stage,
         exposure: inputs.number("exposure") as f32,
     };
@@ -192,114 +207,6 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     Ok(vec![Value::Maps(Arc::new(maps))])
 }
 
-/// Everything but the materials.
-fn stage(inputs: &Inputs<'_>, size: [f64; 2]) -> Result<Stage, Failure> {
-    let cuts = inputs.list("cuts").iter().enumerate();
-    let cuts = cuts
-        .map(|(index, item)| cut(index, item))
-        .collect::<Result<Vec<_>, _>>()?;
-    if cuts.len() > MOST_CUTS {
-        let message = format!("expected at most {MOST_CUTS} cuts, found {}", cuts.len());
-        return Err(Failure::of_input("cuts", message));
-    }
-    if !cuts.is_empty() {
-        check_closed(inputs.mesh("on")).map_err(not_closed)?;
-    }
-    let side = side(&cuts);
-    let is_notch = inputs.choice("remove") == "common";
-    let thing = Thing::new(Arc::clone(inputs.mesh("on")), cuts, is_notch);
-    let points = thing.outline();
-    if points.is_empty() {
-        return Err(Failure::of_input("cuts", "the cuts leave nothing to see")
-            .with_hint("a `normal` points towards what is removed: turn one round"));
-    }
-    let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let reach = (high - low).length();
-    let camera = Camera::new(&Record::of(inputs.get("camera")), size, &points, side)?;
-    let lights = inputs.list("lights");
-    if lights.len() > MOST_LIGHTS {
-        let message = format!(
-            "expected at most {MOST_LIGHTS} lights, found {}",
-            lights.len()
-        );
-        return Err(Failure::of_input("lights", message));
-    }
-    let lights = lights.iter().enumerate();
-    let lights = lights.map(|(index, item)| Light::read(item, index, (low + high) * 0.5));
-    let mut lights = lights.collect::<Result<Vec<_>, _>>()?;
-    if lights.is_empty() {
-        lights.push(studio(&camera));
-    }
-    let count = usize::try_from(inputs.whole("samples")).unwrap_or(1);
-    Ok(Stage {
-        sky: Sky::read(&Record::of(inputs.get("sky")), count, reach),
-        scene: Scene {
-            things: vec![thing],
-            ground: inputs.toggle("ground").then_some(low.z),
-            margin: 1e-6 * reach.max(high.abs().max(low.abs()).max_element()),
-        },
-        camera,
-        lights,
-        disc: Disc::new(),
-    })
-}
-
-/// Why a mesh cannot be cut.
-fn not_closed(open: Open) -> Failure {
-    match open {
-        Open::Edges { count, place } => {
-            let [x, y, z] = place.to_array();
-            let message = format!(
-                "the mesh is not closed, so it has no inside that cuts could show: {count} of its edges lie open, \
-                 one at ({x:.3}, {y:.3}, {z:.3})"
-            );
-            Failure::of_input("on", message)
-                .with_hint("close the mesh where it is made, or remove the `cuts`")
-        }
-        Open::InsideOut => Failure::of_input(
-            "on",
-            "the mesh is inside out: its triangles run clockwise seen from outside",
-        )
-        .with_hint("turn its triangles round where it is made"),
-    }
-}
-
-/// One wide light from the left, above and behind the camera.
-fn studio(camera: &Camera) -> Light {
-    let level = DVec3::new(camera.back().x, camera.back().y, 0.0);
-    let direction = level.normalize_or_zero() * 0.7 - camera.right() * 0.75 + DVec3::Z * 0.95;
-    let direction = direction.try_normalize().unwrap_or(DVec3::Z);
-    Light::distant(direction, 14.0, [0.78, 0.76, 0.73])
-}
-
-fn cut(index: usize, item: &Value) -> Result<Cut, Failure> {
-    let stated = Record::of(Some(item));
-    let vector = |name: &str| stated.vector(name).unwrap_or_default();
-    let Some(normal) = vector("normal").try_normalize() else {
-        let message = format!("the `normal` of cut {} has no length", index + 1);
-        return Err(Failure::of_input("cuts", message).at_item(index));
-    };
-    Ok(Cut {
-        point: vector("point"),
-        normal,
-    })
-}
-
-/// The side from which most is seen of the cut faces; from the front where there are none.
-fn side(cuts: &[Cut]) -> DVec3 {
-    let before: DVec3 = cuts.iter().map(|cut| cut.normal).sum();
-    let level = DVec3::new(before.x, before.y, 0.0);
-    let front = match level.try_normalize() {
-        Some(front) if level.length() > 0.2 * before.length() => front,
-        _ => DVec3::NEG_Y,
-    };
-    // A little from the right, and from above.
-    let right = DVec3::Z.cross(front);
-    (front + right * 0.45 + DVec3::Z * (0.45 + 0.5 * before.normalize_or_zero().z.max(0.0)))
-        .normalize()
-}
-
 /// Where the material of the mesh is evaluated.
 fn place(
     inputs: &Inputs<'_>,
@@ -307,6 +214,9 @@ fn place(
     sight: &Field,
     build: &Build<'_>,
 ) -> Result<Field, Failure> {
+    if inputs.get("on").is_none() {
+        return Ok(sight.part(seen::COORDINATES, 3));
+    }
     if material.domain != Domain::Plane {
         return Ok(sight.part(seen::PLACE, 3));
     }
@@ -319,12 +229,27 @@ fn place(
         let message = "a flat piece has no inside that cuts could show";
         return Err(Failure::of_input("cuts", message).with_hint("link `of` to the uncut material"));
     }
+    let size = size_of(inputs, material)?;
+    Ok(build.kernel(OnSquare { size }, vec![sight.part(seen::COORDINATES, 3)]))
+}
+
+/// The size of a flat piece.
+fn size_of(inputs: &Inputs<'_>, material: &Material) -> Result<[f64; 2], Failure> {
     let stated = inputs.get("size").map(|_| inputs.pair("size"));
-    let size = material.size.or(stated).ok_or_else(|| {
+    material.size.or(stated).ok_or_else(|| {
         Failure::of_input("of", "the material is not a cut piece, so it has no size")
             .with_hint("state its `size: (200, 100)`")
-    })?;
-    Ok(build.kernel(OnSquare { size }, vec![sight.part(seen::COORDINATES, 3)]))
+    })
+}
+
+/// How bright the sky makes level ground where nothing stands.
+fn open_sky(stage: &Stage) -> [f64; 3] {
+    let straight_up = Point::on_plane(DVec3::ZERO, DVec3::Z, 0.0);
+    let light = match stage.scene.relief {
+        Some(_) => Relief::open_sky(&stage.sky),
+        None => stage.sky.light(None, &straight_up, &Turn::at(0.0, 0.0)),
+    };
+    light.colour
 }
 
 /// The columns of a material at a place, as the shading reads them.

@@ -1,6 +1,7 @@
 //! Laws of field programs, with small kernels of the tests' own.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+mod cells;
 mod pictures;
 mod programs;
 

@@ -14,6 +14,11 @@ const FIELDS: f64 = 24.0;
 /// becomes a piece of its own: the largest keeps the id, the others get new ids behind the highest. Edges must be
 /// straight.
 pub(crate) fn clip(pieces: Vec<Piece>, region: &Region) -> Vec<Piece> {
+    clip_from(pieces, region).0
+}
+
+/// [`clip`], and which piece each part was cut from.
+pub(crate) fn clip_from(pieces: Vec<Piece>, region: &Region) -> (Vec<Piece>, Vec<usize>) {
     let clipper = Clipper::new(region);
     let mut fields: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     let places: Vec<Place> = pieces
@@ -41,21 +46,23 @@ pub(crate) fn clip(pieces: Vec<Piece>, region: &Region) -> Vec<Piece> {
         .unwrap_or_default();
     let mut clipped = vec![];
     let mut more = vec![];
-    for ((piece, place), parts) in pieces.into_iter().zip(places).zip(parts) {
+    for (number, ((piece, place), parts)) in pieces.into_iter().zip(places).zip(parts).enumerate() {
         match (place, parts) {
             (_, Some(parts)) => {
-                let mut parts = parts.into_iter();
+                let mut parts = parts.into_iter().map(|part| (part, number));
                 clipped.extend(parts.next());
                 more.extend(parts);
             }
-            (Place::Inside, None) => clipped.push(piece),
+            (Place::Inside, None) => clipped.push((piece, number)),
             _ => {}
         }
     }
     let ids = highest.saturating_add(1)..;
-    more.iter_mut().zip(ids).for_each(|(part, id)| part.id = id);
+    more.iter_mut()
+        .zip(ids)
+        .for_each(|((part, _), id)| part.id = id);
     clipped.extend(more);
-    clipped
+    clipped.into_iter().unzip()
 }
 
 /// Where a piece lies.

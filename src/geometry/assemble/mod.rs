@@ -7,15 +7,15 @@ mod edges;
 mod split;
 mod weld;
 
-pub(crate) use clip::clip;
+pub(crate) use clip::{clip, clip_from};
 pub(crate) use dissolve::{dissolve, merge_slivers};
+pub(crate) use weld::{Corner, weld};
 
 use crate::geometry::polygon::{Measure, measure};
 use crate::value::Partition;
 use draft::Draft;
 use glam::DVec2;
 use rayon::prelude::*;
-use weld::Corner;
 
 /// What is to become a cell.
 #[derive(Clone, Debug)]
@@ -58,6 +58,24 @@ impl Piece {
         let rings = self.rings.iter().map(Ring::measure);
         rings.fold(Measure::default(), |whole, ring| whole + ring)
     }
+}
+
+/// The cells of a partition as pieces, with their own centres.
+pub(crate) fn pieces_of(partition: &Partition) -> Vec<Piece> {
+    let ring = |corners: std::ops::Range<usize>| Ring {
+        bulges: match partition.bulges.is_empty() {
+            true => vec![],
+            false => partition.bulges[corners.clone()].to_vec(),
+        },
+        corners: partition.corners[corners].to_vec(),
+    };
+    let piece = |cell: usize| Piece {
+        rings: partition.rings_of(cell).map(ring).collect(),
+        id: partition.ids[cell],
+        frame: partition.frames[cell],
+        centre: Some(partition.centres[cell]),
+    };
+    (0..partition.len()).into_par_iter().map(piece).collect()
 }
 
 /// The partition of which the pieces, which must not overlap, are the cells.

@@ -8,14 +8,14 @@ pub(super) const SEAM: f64 = 7.310_585;
 
 /// A corner that rings share, some whole periods away from its place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Corner {
-    pub(super) point: u32,
-    pub(super) period: [i32; 2],
+pub(crate) struct Corner {
+    pub(crate) point: u32,
+    pub(crate) period: [i32; 2],
 }
 
 impl Corner {
     /// The corner whole periods further on.
-    pub(super) fn moved(self, by: [i32; 2]) -> Corner {
+    pub(crate) fn moved(self, by: [i32; 2]) -> Corner {
         let period = [0, 1].map(|axis| self.period[axis] + by[axis]);
         Corner { period, ..self }
     }
@@ -23,7 +23,7 @@ impl Corner {
 
 /// The places of shared corners, and which of them each point becomes: the first of those that are linked by steps of at
 /// most `tolerance`.
-pub(super) fn weld(
+pub(crate) fn weld(
     drawn: &[DVec2],
     period: Option<DVec2>,
     tolerance: f64,

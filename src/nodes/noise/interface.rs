@@ -12,8 +12,9 @@ use crate::value::{Domain, Type, Unit, Value};
 pub(super) const SOURCE: &str = "Perlin 1985 (octaves, turbulence), 2002 (gradients and fade); Musgrave 1998 in Ebert et al., Texturing and Modeling \
      (ridged multifractal, offset 1 and gain 2); filtering: own construction";
 
-/// The inputs of the noise kinds.
-pub(super) const INPUTS: &[Input] = &[
+/// The inputs of the noise kinds, on one domain.
+pub(super) const fn inputs(domain: Domain) -> [Input; 8] {
+    [
     Input::new(
         "size",
         Type::Vector(Unit::Millimetre),
@@ -61,7 +62,16 @@ pub(super) const INPUTS: &[Input] = &[
         "Another number gives other noise; so does the recipe's seed.",
     )
     .default("0"),
-];
+    Input::number(
+        "variant",
+        Unit::One,
+        "Where it has another value there is other noise: let it be a `cell_value` for noise of its own in each cell.",
+    )
+    .per_point()
+    .of(domain)
+    .default("0"),
+    ]
+}
 
 /// The outputs of the noise kinds, on one domain.
 pub(super) const fn outputs(domain: Domain) -> [Output; 2] {
@@ -91,9 +101,14 @@ pub(super) fn build(
     check_fineness(inputs)?;
     let cells = period::cells(inputs)?;
     let mut random = Random::new(build.seed, kind, inputs.whole("seed"));
+    let variant = match inputs.field("variant") {
+        field if field.as_constant() == Some(&[0.0]) => vec![],
+        field => vec![field],
+    };
     let mut columns = |count| {
         let kernel = kernel(inputs, cells, &mut random, count);
-        Value::Field(build.kernel(kernel, vec![Field::position(domain)]))
+        let position = Field::position(domain);
+        Value::Field(build.kernel(kernel, [vec![position], variant.clone()].concat()))
     };
     Ok(vec![columns(1), columns(3)])
 }

@@ -25,7 +25,7 @@ const THIRD: i32 = i32::MAX / 3;
 pub(super) fn gradient_noise<S: Simd, const N: usize>(
     simd: S,
     at: [S::f32s; 3],
-    seed: u32,
+    seed: S::u32s,
     repeat: [f32; 3],
 ) -> [S::f32s; N] {
     let (cells_x, x) = cell::<S>(simd, at[0], MULTIPLIERS[0], repeat[0]);
@@ -64,6 +64,14 @@ fn edge<S: Simd, const N: usize>(
     let near = along_gradients::<S, N>(near, [x, y, z]);
     let far = along_gradients::<S, N>(far, [x, y, z - 1.0]);
     blend::<S, N>(near, far, fade_z)
+}
+
+/// What a number adds to a seed: nothing if it is 0.
+#[inline(always)]
+pub(super) fn variant<S: Simd>(number: S::f32s) -> S::u32s {
+    // -0 is 0.
+    let bits = (number + 0.0).bitcast::<S::u32s>() * MULTIPLIERS[0];
+    (bits ^ (bits >> 15)) * MULTIPLIERS[3]
 }
 
 /// What the cell and the next one add to a hash, and the position within the cell from 0 to 1.

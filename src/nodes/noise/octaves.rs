@@ -2,7 +2,7 @@
 
 use super::filter::{DIVISIONS, Division, Steps, weight};
 use super::form::{Form, next_strength};
-use super::lattice::{BORDER, gradient_noise};
+use super::lattice::{BORDER, gradient_noise, variant};
 use crate::field::{Block, InputColumn, Kernel};
 use crate::key::KeyHasher;
 use fearless_simd::dispatch;
@@ -48,6 +48,8 @@ struct Pixels<S: Simd> {
     sides: [[S::f32s; 3]; 2],
     /// The squares of the sides' lengths.
     squares: [S::f32s; 2],
+    /// What is added to the seeds.
+    variant: S::u32s,
 }
 
 impl NoiseKernel {
@@ -77,12 +79,12 @@ impl NoiseKernel {
         sums
     }
 
-    /// The samples from `start` on, clamped to `border`.
+    /// The samples from `start` on, clamped to `border`. Columns: position, and the variant if it varies.
     #[inline(always)]
     fn pixels<S: Simd>(
         &self,
         simd: S,
-        position: [InputColumn<'_>; 3],
+        columns: &[InputColumn<'_>],
         start: usize,
         border: f32,
     ) -> Pixels<S> {
@@ -92,8 +94,14 @@ impl NoiseKernel {
             centre: [zero; 3],
             sides: [[zero; 3]; 2],
             squares: [zero; 2],
+            variant: match columns.get(3) {
+                Some(column) => {
+                    variant::<S>(S::f32s::from_slice(simd, &column.values[range.clone()]))
+                }
+                None => S::u32s::splat(simd, 0),
+            },
         };
-        for (axis, column) in position.iter().enumerate() {
+        for (axis, column) in columns[..3].iter().enumerate() {
             let (scale, period) = (self.scale[axis], self.period[axis]);
             let mut at = S::f32s::from_slice(simd, &column.values[range.clone()]);
             if period > 0.0 {
@@ -162,11 +170,12 @@ fn mean<S: Simd, const N: usize>(
         return means;
     }
     let mut sums = [S::f32s::splat(simd, 0.0); N];
+    let seed = pixels.variant ^ octave.seed;
     let [rows, columns] = divisions;
     for row in 0..rows.count {
         for column in 0..columns.count {
             let at = octave.place::<S>(pixels, [rows.point(row), columns.point(column)]);
-            let noises = gradient_noise::<S, N>(simd, at, octave.seed, octave.repeat);
+            let noises = gradient_noise::<S, N>(simd, at, seed, octave.repeat);
             for (sum, noise) in sums.iter_mut().zip(noises) {
                 *sum += form.expected::<S>(noise, weight);
             }
@@ -223,8 +232,8 @@ impl Kernel for NoiseKernel {
         self.columns
     }
 
-    fn reads_spread(&self, _: usize) -> bool {
-        true
+    fn reads_spread(&self, column: usize) -> bool {
+        column < 3
     }
 
     fn nanoseconds(&self) -> f32 {
@@ -232,12 +241,12 @@ impl Kernel for NoiseKernel {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let position = [block.inputs[0], block.inputs[1], block.inputs[2]];
+        let columns = block.inputs;
         let outputs = &mut *block.outputs;
         if self.columns == 1 {
-            dispatch!(block.level, simd => evaluate_block::<_, 1>(simd, self, position, outputs));
+            dispatch!(block.level, simd => evaluate_block::<_, 1>(simd, self, columns, outputs));
         } else {
-            dispatch!(block.level, simd => evaluate_block::<_, 3>(simd, self, position, outputs));
+            dispatch!(block.level, simd => evaluate_block::<_, 3>(simd, self, columns, outputs));
         }
     }
 }
@@ -246,12 +255,12 @@ impl Kernel for NoiseKernel {
 fn evaluate_block<S: Simd, const N: usize>(
     simd: S,
     kernel: &NoiseKernel,
-    position: [InputColumn<'_>; 3],
+    columns: &[InputColumn<'_>],
     outputs: &mut [Vec<f32>],
 ) {
     let border = kernel.border();
-    for start in (0..position[0].values.len()).step_by(S::f32s::LEN) {
-        let pixels = kernel.pixels::<S>(simd, position, start, border);
+    for start in (0..columns[0].values.len()).step_by(S::f32s::LEN) {
+        let pixels = kernel.pixels::<S>(simd, columns, start, border);
         let sums = kernel.sums::<S, N>(simd, pixels);
         for (sum, output) in sums.into_iter().zip(outputs.iter_mut()) {
             sum.store_slice(&mut output[start..start + S::f32s::LEN]);

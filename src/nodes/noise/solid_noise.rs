@@ -1,8 +1,8 @@
 //! `solid_noise`: irregular values at every point of a solid.
 
-use super::interface::{self, INPUTS, SOURCE};
+use super::interface::{self, SOURCE};
 use super::octaves::VERSION;
-use crate::node::{Build, Failure, Inputs, Kind, Output};
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Domain, Value};
 
 /// Noise in a solid.
@@ -18,6 +18,7 @@ pub static KIND: Kind = Kind {
     build,
 };
 
+const INPUTS: &[Input] = &interface::inputs(Domain::Solid);
 const OUTPUTS: &[Output] = &interface::outputs(Domain::Solid);
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {

@@ -17,11 +17,10 @@ mod zones;
 use self::zones::{Cut, Joined, Zones};
 use super::blend::channels::{Axes, pairs};
 use crate::field::Field;
-use crate::geometry::assemble::{Piece, Ring, assemble};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::partition::found::Found;
-use crate::value::{Domain, Material, Partition, Region, Surface, Type, Unit, Value};
-use glam::DVec2;
+use crate::nodes::partition::region_cells::cells;
+use crate::value::{Domain, Material, Surface, Type, Unit, Value};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -187,7 +186,7 @@ fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure
     let stated = ["region", "cells"].map(|name| inputs.get(name).is_some());
     match stated {
         [true, false] => {
-            let found = Found::new(build, &Arc::new(as_cells(inputs.region("region"))));
+            let found = Found::new(build, &Arc::new(cells(inputs.region("region"))));
             Ok([found.border(), found.index()])
         }
         [false, true] => {
@@ -203,19 +202,4 @@ fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure
             Err(failure.with_hint("link a `region`, or the `cells` of a partition"))
         }
     }
-}
-
-/// The polygons of a region as cells.
-fn as_cells(region: &Region) -> Partition {
-    let polygons = region.polygons.iter().enumerate();
-    let pieces = polygons.map(|(id, polygon)| Piece {
-        rings: polygon
-            .rings()
-            .map(|ring| Ring::straight(ring.to_vec()))
-            .collect(),
-        id: id as u32,
-        frame: DVec2::X,
-        centre: None,
-    });
-    assemble(pieces.collect(), None, 0.0)
 }

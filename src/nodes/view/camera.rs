@@ -5,7 +5,7 @@ use crate::key::KeyHasher;
 use crate::node::{Failure, Input};
 use crate::nodes::view::record::Record;
 use crate::value::{Type, Unit};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The parts of the input `camera`.
 pub(super) const CAMERA: &[Input] = &[
@@ -54,6 +54,9 @@ pub(super) const CAMERA: &[Input] = &[
 
 /// The share of the picture that is left free on each side of a scene that is framed automatically.
 const BORDER: f64 = 0.06;
+
+/// Points of the picture along each side that are asked what they show.
+const PROBES: u32 = 33;
 
 /// A camera.
 #[derive(Clone, Copy, Debug)]
@@ -137,6 +140,39 @@ impl Camera {
         } else {
             Ray::new(self.position + offset, -self.back)
         }
+    }
+
+    /// The distance of a point in pixels of the picture, as wide as they are there.
+    pub(super) fn pixels_away(&self, point: DVec3) -> f64 {
+        let depth = self.back.dot(self.position - point);
+        let pixel = 2.0 * self.half / self.size[1];
+        match self.is_perspective {
+            true => libm::log(depth.max(1e-9)) / pixel,
+            false => depth / pixel,
+        }
+    }
+
+    /// The side of what a pixel shows of a rectangle at height 0, where it shows least; of what it shows in the middle
+    /// of the rectangle if that is not seen.
+    pub(super) fn finest(&self, size: DVec2) -> f64 {
+        let pixel = 2.0 * self.half / self.size[1];
+        if !self.is_perspective {
+            return pixel;
+        }
+        let depth = |point: DVec3| self.back.dot(self.position - point);
+        let seen = (0..PROBES * PROBES).filter_map(|index| {
+            let part = |index: u32| f64::from(index) / f64::from(PROBES - 1);
+            let [x, y] = [part(index % PROBES), part(index / PROBES % PROBES)];
+            let ray = self.ray(x * self.size[0], y * self.size[1]);
+            let distance = -ray.point(0.0).z / ray.direction().z;
+            let point = ray.point(distance);
+            let is_seen =
+                distance > 0.0 && point.truncate().clamp(DVec2::ZERO, size) == point.truncate();
+            is_seen.then(|| depth(point))
+        });
+        let nearest = seen.fold(f64::INFINITY, f64::min);
+        let middle = depth((0.5 * size).extend(0.0)).abs();
+        pixel * if nearest.is_finite() { nearest } else { middle }
     }
 
     /// From the scene to the camera, at the middle of the picture.

@@ -133,13 +133,20 @@ impl Kernel for Illumination {
                 row[lit::OPENNESS] = NOWHERE;
                 return;
             };
-            let turn = Turn::at(u, v);
-            let light = sky.light(Some(scene), &point, &turn);
-            row[lit::OPENNESS] = light.openness;
-            row[lit::SKY..][..3].copy_from_slice(&light.colour);
-            for (row, light) in row[lit::LIGHTS..].iter_mut().zip(lights) {
-                *row = light.visibility(scene, disc, &point, &turn);
-            }
+            let (of_sky, of_lights) = match &scene.relief {
+                Some(relief) => relief.light(&point, sky, lights),
+                None => {
+                    let turn = Turn::at(u, v);
+                    let seen = |light: &Light| light.visibility(scene, disc, &point, &turn);
+                    (
+                        sky.light(Some(scene), &point, &turn),
+                        lights.iter().map(seen).collect(),
+                    )
+                }
+            };
+            row[lit::OPENNESS] = of_sky.openness;
+            row[lit::SKY..][..3].copy_from_slice(&of_sky.colour);
+            row[lit::LIGHTS..].copy_from_slice(&of_lights);
         });
     }
 }

@@ -1,9 +1,10 @@
 //! Scenes: the things that are seen, cut open by planes, and what rays meet in them.
 //!
-//! A thing is a mesh. Behind a cutting plane its inside is seen if the first triangle that a ray meets from there on
+//! A thing is a mesh; beside things there may be a flat piece with its relief. Behind a cutting plane its inside is seen if the first triangle that a ray meets from there on
 //! is left through, not entered: then the ray was inside, and it meets the plane.
 
 use super::outline;
+use super::relief::Relief;
 use crate::geometry::hierarchy::{Hierarchy, Meeting, Ray};
 use crate::key::{Key, KeyHasher};
 use crate::value::{Mesh, Triangle};
@@ -48,7 +49,7 @@ pub(super) struct Point {
     /// Where.
     pub(super) place: DVec3,
     /// Where rays to lights begin: beside the smooth surface that triangles stand for.
-    start: DVec3,
+    pub(super) start: DVec3,
     /// At right angles to the smooth surface, and to the triangle.
     pub(super) normal: DVec3,
     pub(super) face: DVec3,
@@ -56,7 +57,7 @@ pub(super) struct Point {
     pub(super) distance: f64,
     /// Which surface; 0 is none.
     pub(super) surface: u32,
-    /// Place on the square of the mesh's maps.
+    /// Place on the square of the mesh's maps; on a flat piece, in mm.
     pub(super) coordinates: DVec2,
 }
 
@@ -64,6 +65,8 @@ pub(super) struct Point {
 #[derive(Debug)]
 pub(super) struct Scene {
     pub(super) things: Vec<Thing>,
+    /// A flat piece with its heights, on the ground. It hides nothing from rays to lights: it lights itself.
+    pub(super) relief: Option<Relief>,
     /// Height of the ground.
     pub(super) ground: Option<f64>,
     /// Distance from a surface at which rays begin, in mm.
@@ -89,6 +92,11 @@ fn surface_of(chart: u32) -> u32 {
     }
 }
 
+/// The surface number of a flat piece, or of one of its edges.
+pub(super) fn relief_surface(edge: Option<u32>) -> u32 {
+    edge.map_or(GROWN, |edge| SAWN + edge)
+}
+
 impl Scene {
     /// The first surface along a ray.
     pub(super) fn look(&self, ray: &Ray) -> Option<Point> {
@@ -97,7 +105,10 @@ impl Scene {
             point.surface += index * SURFACES;
             Some(point)
         });
-        points.min_by(|a, b| a.distance.total_cmp(&b.distance))
+        let relief = self.relief.iter().filter_map(|relief| relief.look(ray));
+        points
+            .chain(relief)
+            .min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
     /// Where a ray meets the ground, if it comes from above.
@@ -124,6 +135,9 @@ impl Scene {
             parts.flat_map(|vector| vector.to_array()).for_each(|part| {
                 key.number(part);
             });
+        }
+        if let Some(relief) = &self.relief {
+            relief.add_to_key(key);
         }
         key.whole(i64::from(self.ground.is_some()))
             .number(self.ground.unwrap_or(0.0))

@@ -50,6 +50,7 @@ impl Noise {
             "lacunarity" => Value::Number(self.lacunarity),
             "form" => Value::Choice(self.form),
             "period" => Value::Vector(DVec3::from(self.period)),
+            "variant" => Value::Number(0.0),
             _ => Value::Whole(self.seed),
         };
         let values: Vec<_> = self
@@ -136,7 +137,7 @@ fn lattice_at<S: Simd>(simd: S, at: [f32; 3], seed: u32) -> f32 {
     let [noise] = gradient_noise(
         simd,
         at.map(|part| S::f32s::splat(simd, part)),
-        seed,
+        S::u32s::splat(simd, seed),
         [0.0; 3],
     );
     noise[0]

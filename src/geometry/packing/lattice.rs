@@ -1,0 +1,66 @@
+//! Lattices that stones of one shape lie on.
+
+use glam::DVec2;
+
+/// Rows of points: `step.x` apart within a row, rows `step.y` apart, each row moved by `shift` of a step against the
+/// one before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lattice {
+    /// Distance within a row and between rows, in mm.
+    pub(crate) step: DVec2,
+    /// How far each row is moved, as a share of `step.x`.
+    pub(crate) shift: f64,
+}
+
+impl Lattice {
+    /// The lattice point nearest to an offset from a lattice point, both in the lattice's own frame.
+    pub(crate) fn nearest(&self, offset: DVec2) -> DVec2 {
+        let rows = offset.y / self.step.y;
+        if self.shift == 0.0 {
+            return DVec2::new((offset.x / self.step.x).round(), rows.round()) * self.step;
+        }
+        let in_row = |row: f64| {
+            let moved = self.shift * row;
+            let column = (offset.x / self.step.x - moved).round() + moved;
+            DVec2::new(column, row) * self.step
+        };
+        let (below, above) = (in_row(rows.floor()), in_row(rows.floor() + 1.0));
+        if offset.distance_squared(above) < offset.distance_squared(below) {
+            above
+        } else {
+            below
+        }
+    }
+
+    /// The same with all lengths multiplied.
+    pub(crate) fn scaled(&self, scale: f64) -> Lattice {
+        Lattice {
+            step: scale * self.step,
+            ..*self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_point_is_the_one_that_a_search_finds() {
+        for (step, shift) in [((2.0, 1.0), 0.0), ((2.0, 1.0), 0.5), ((1.0, 0.866), 0.5), ((3.0, 1.0), 0.25)] {
+            let lattice = Lattice {
+                step: DVec2::from(step),
+                shift,
+            };
+            let point = |x: i32, y: i32| DVec2::new(f64::from(x) + shift * f64::from(y), f64::from(y)) * lattice.step;
+            let all: Vec<DVec2> = (-9..10).flat_map(|x| (-9..10).map(move |y| point(x, y))).collect();
+            for at in 0..200 {
+                let offset = DVec2::new(f64::from(at * 37 % 101) / 33.0 - 1.5, f64::from(at * 61 % 97) / 32.0 - 1.5);
+                let found = lattice.nearest(offset);
+                assert!(all.iter().any(|point| point.distance(found) < 1e-12));
+                let best = all.iter().map(|point| point.distance(offset)).fold(f64::INFINITY, f64::min);
+                assert!(found.distance(offset) <= best + 1e-12);
+            }
+        }
+    }
+}

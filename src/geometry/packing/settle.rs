@@ -1,0 +1,133 @@
+//! Lets particles settle (Miyata, Itoh & Shimada, section 3): masses on dampers that push and pull each other.
+
+use super::force::{Force, REACH};
+use super::guide::{Guide, nearest_turn};
+use super::neighbours::{CHUNK, Neighbours};
+use super::Stone;
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// Length of a step, and damping (semi-implicit Euler, as for bubble meshes).
+const STEP: f64 = 0.08;
+const DAMPING: f64 = 1.5;
+
+/// Largest force that counts as none, in stones.
+const AT_REST: f64 = 1e-3;
+
+/// How much farther than the force reaches neighbours are listed, in stones.
+const SKIN: f64 = 0.25;
+
+/// Steps after which directions are read anew.
+const TURNED: usize = 8;
+
+/// What particles settle in.
+pub(crate) struct Dynamics<'a> {
+    pub(crate) force: Force,
+    /// Length and width of a stone of size 1, in mm.
+    pub(crate) stone: DVec2,
+    pub(crate) guide: &'a Guide,
+    pub(crate) symmetry: u32,
+    pub(crate) period: Option<DVec2>,
+    /// Largest number of steps.
+    pub(crate) steps: usize,
+}
+
+impl Dynamics<'_> {
+    /// Moves what is not fixed until nothing feels a force, or the steps are used up. `go_on` hears the share of the steps.
+    ///
+    /// # Errors
+    /// What `go_on` says.
+    pub(crate) fn settle<E>(
+        &self,
+        stones: &mut [Stone],
+        go_on: &mut dyn FnMut(f64) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut speeds = vec![DVec2::ZERO; stones.len()];
+        let mut neighbours = Neighbours::default();
+        let mut moved = f64::INFINITY;
+        let size = self.stone.max_element();
+        let smallest = stones.iter().map(|stone| stone.scale).fold(f64::INFINITY, f64::min);
+        for step in 0..self.steps {
+            go_on(step as f64 / self.steps as f64)?;
+            if step % TURNED == 0 {
+                self.turn(stones);
+            }
+            if moved > 0.5 * SKIN * smallest * self.stone.min_element() {
+                neighbours = self.neighbours(stones);
+                moved = 0.0;
+            }
+            let places = places(stones, &neighbours);
+            let forces = self.forces(stones, &neighbours, &places);
+            let mut largest: f64 = 0.0;
+            let mut fastest: f64 = 0.0;
+            for ((stone, speed), force) in stones.iter_mut().zip(&mut speeds).zip(forces) {
+                if !stone.is_fixed {
+                    *speed = (*speed + STEP * force) / (1.0 + STEP * DAMPING);
+                    stone.point += STEP * *speed;
+                    largest = largest.max(force.length_squared());
+                    fastest = fastest.max(speed.length_squared());
+                }
+            }
+            moved += STEP * fastest.sqrt();
+            if largest < (AT_REST * size) * (AT_REST * size) {
+                break;
+            }
+        }
+        self.turn(stones);
+        Ok(())
+    }
+
+    fn turn(&self, stones: &mut [Stone]) {
+        stones.par_iter_mut().for_each(|stone| {
+            let wished = self.guide.at(stone.point).frame;
+            stone.frame = nearest_turn(wished, stone.frame, self.symmetry);
+        });
+    }
+
+    fn neighbours(&self, stones: &[Stone]) -> Neighbours {
+        let points: Vec<DVec2> = stones.iter().map(|stone| stone.point).collect();
+        let largest = stones.iter().map(|stone| stone.scale).fold(0.0, f64::max);
+        let reach = (REACH + SKIN) * largest * self.stone.max_element();
+        let round = self.stone.x == self.stone.y;
+        Neighbours::new(&points, self.period, reach, |index, other, offset| {
+            let (one, other) = (&stones[index], &stones[other]);
+            let scale = 0.5 * (one.scale + other.scale);
+            let reach = (REACH + SKIN) * scale;
+            let within = if round { offset } else { other.within(offset) };
+            !(one.is_fixed && other.is_fixed) && (within / self.stone).length_squared() < reach * reach
+        })
+    }
+
+    /// The force on every particle: the sum over its neighbours in the order of their list.
+    fn forces(&self, stones: &[Stone], neighbours: &Neighbours, places: &[DVec2]) -> Vec<DVec2> {
+        let of = |index: usize| {
+            let stone = &stones[index];
+            if stone.is_fixed {
+                return DVec2::ZERO;
+            }
+            let mut sum = DVec2::ZERO;
+            for source in neighbours.of(index) {
+                let other = &stones[neighbours.sources[*source as usize].0 as usize];
+                let scale = 0.5 * (stone.scale + other.scale);
+                let within = other.within(stone.point - places[*source as usize]);
+                let within = within / (scale * self.stone);
+                if within.length_squared() < REACH * REACH {
+                    sum += other.frame.rotate(self.force.at(within) * self.stone) * scale;
+                }
+            }
+            sum
+        };
+        let chunks = (0..stones.len().div_ceil(CHUNK)).into_par_iter();
+        let chunks = chunks.map(|chunk| {
+            let end = stones.len().min((chunk + 1) * CHUNK);
+            (chunk * CHUNK..end).map(of).collect::<Vec<DVec2>>()
+        });
+        chunks.flatten_iter().collect()
+    }
+}
+
+/// Where all sources of force are.
+fn places(stones: &[Stone], neighbours: &Neighbours) -> Vec<DVec2> {
+    let sources = neighbours.sources.iter();
+    sources.map(|(index, by)| stones[*index as usize].point + *by).collect()
+}

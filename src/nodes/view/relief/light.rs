@@ -1,0 +1,246 @@
+//! Light on relief: the sky and the lights as far as they stand above its horizon.
+//!
+//! It is found at the corners of the grid of heights, by the horizon in directions all around and towards the lights,
+//! and between them it is blended. Of the sky each corner keeps the mean direction as well, so that slopes
+//! between corners face what they face (the first two bands of Ramamoorthi & Hanrahan 2001, made exact for the
+//! corner's own slope). Corners are looked at when they are first asked for, in tiles.
+
+use super::Relief;
+use crate::geometry::heights::Heights;
+use crate::nodes::view::light::{Light, Seen, Sky, SkyLight, Turn};
+use crate::nodes::view::scene::{Point, is_cut_face};
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// Corners along each side of a tile.
+const TILE: usize = 16;
+
+/// Numbers that are kept of the sky.
+const OF_SKY: usize = 8;
+
+/// Strips into which the face of a wide light is cut.
+const STRIPS: usize = 7;
+
+/// Below this width a light has only one strip.
+const NARROW: f64 = 0.03;
+
+/// The light at the corners of a grid of heights.
+#[derive(Debug)]
+pub(super) struct LightMap {
+    /// Tiles in a row.
+    columns: usize,
+    /// For each tile its corners one after the other: [`OF_SKY`] numbers of the sky, and one for each light.
+    tiles: Vec<OnceLock<Vec<f32>>>,
+}
+
+/// What a point sees of a sky that is white all over, and of one as bright as it is high: with a normal n, a white
+/// surface is as bright as `even + n . towards`.
+#[derive(Clone, Copy, Debug, Default)]
+struct Open {
+    even: f64,
+    towards: DVec3,
+}
+
+impl Open {
+    fn on(&self, normal: DVec3) -> f64 {
+        (self.even + self.towards.dot(normal)).max(0.0)
+    }
+}
+
+impl LightMap {
+    /// A map of nothing yet.
+    pub(super) fn over(heights: &Heights) -> LightMap {
+        let [columns, rows] = heights.cells().map(|cells| (cells + 1).div_ceil(TILE));
+        LightMap {
+            columns,
+            tiles: (0..columns * rows).map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    /// The light that reaches a point of the relief, of its edges or of the ground.
+    pub(super) fn light(
+        &self,
+        relief: &Relief,
+        point: &Point,
+        sky: &Sky,
+        lights: &[Light],
+    ) -> (SkyLight, Vec<f64>) {
+        if is_cut_face(point.surface) {
+            // Nothing stands before an edge.
+            return (
+                sky.light(None, point, &Turn::at(0.0, 0.0)),
+                vec![1.0; lights.len()],
+            );
+        }
+        let numbers = match point.surface {
+            0 => at(&relief.heights, point.place, point.normal, sky, lights),
+            _ => self.blended(relief, point.coordinates, sky, lights),
+        };
+        let open = |first: usize| Open {
+            even: numbers[first],
+            towards: DVec3::from_slice(&numbers[first + 1..first + 4]),
+        };
+        let light = from_sky([open(0), open(4)], point.normal, sky);
+        (light, numbers[OF_SKY..].to_vec())
+    }
+
+    /// What is between the corners of a cell.
+    fn blended(&self, relief: &Relief, place: DVec2, sky: &Sky, lights: &[Light]) -> Vec<f64> {
+        let ([x, y], at) = relief.heights.cell_at(place);
+        let mut sum = vec![0.0; OF_SKY + lights.len()];
+        for (corner, weight) in [
+            ([x, y], (1.0 - at.x) * (1.0 - at.y)),
+            ([x + 1, y], at.x * (1.0 - at.y)),
+            ([x, y + 1], (1.0 - at.x) * at.y),
+            ([x + 1, y + 1], at.x * at.y),
+        ] {
+            for (sum, number) in sum.iter_mut().zip(self.corner(relief, corner, sky, lights)) {
+                *sum += f64::from(*number) * weight;
+            }
+        }
+        sum
+    }
+
+    fn corner<'a>(
+        &'a self,
+        relief: &Relief,
+        [x, y]: [usize; 2],
+        sky: &Sky,
+        lights: &[Light],
+    ) -> &'a [f32] {
+        let [column, row] = [x / TILE, y / TILE];
+        let make = || tile(relief, [column * TILE, row * TILE], sky, lights);
+        let tile = self.tiles[row * self.columns + column].get_or_init(make);
+        let width = OF_SKY + lights.len();
+        &tile[(y % TILE * TILE + x % TILE) * width..][..width]
+    }
+}
+
+/// The numbers of the corners of a tile; those beyond the grid are 0.
+fn tile(relief: &Relief, first: [usize; 2], sky: &Sky, lights: &[Light]) -> Vec<f32> {
+    let heights = &relief.heights;
+    let width = OF_SKY + lights.len();
+    let mut tile = vec![0.0; TILE * TILE * width];
+    for (index, numbers) in tile.chunks_exact_mut(width).enumerate() {
+        let corner = [first[0] + index % TILE, first[1] + index / TILE];
+        if (0..2).any(|axis| corner[axis] > heights.cells()[axis]) {
+            continue;
+        }
+        let place = heights.place(corner);
+        let point = place.extend(heights.corner(corner));
+        let found = at(heights, point, relief.normal(place), sky, lights);
+        for (number, found) in numbers.iter_mut().zip(found) {
+            *number = found as f32;
+        }
+    }
+    tile
+}
+
+/// What a point with a normal sees of the sky and of the lights.
+fn at(heights: &Heights, point: DVec3, normal: DVec3, sky: &Sky, lights: &[Light]) -> Vec<f64> {
+    let open = around(heights, point, normal, sky);
+    let of_sky = open.iter().flat_map(|open| {
+        let [x, y, z] = open.towards.to_array();
+        [open.even, x, y, z]
+    });
+    let of_lights = lights.iter().map(|light| visible(heights, point, light));
+    of_sky.chain(of_lights).collect()
+}
+
+/// What a point sees of an even sky, and of one as bright as it is high.
+///
+/// In a slice of the sky between its horizon and the zenith, with e the elevation and n.x the part of the normal
+/// towards the slice, a surface faces by n.x cos e + n.z sin e; this times cos e, and sin e for the second, is
+/// integrated as it is.
+fn around(heights: &Heights, point: DVec3, normal: DVec3, sky: &Sky) -> [Open; 2] {
+    let slices = sky.slices();
+    let share = 2.0 / slices.len() as f64;
+    let mut open = [Open::default(); 2];
+    for direction in slices {
+        let facing = normal.truncate().dot(*direction);
+        let own = -facing / normal.z;
+        let rise = heights.horizon(point, *direction, f64::INFINITY);
+        let rise = rise.max(own).max(0.0);
+        let cosine = 1.0 / (1.0 + rise * rise).sqrt();
+        let (sine, square) = (rise * cosine, cosine * cosine);
+        let elevation = libm::atan(rise);
+        let level = 0.5 * (0.5 * PI - elevation - sine * cosine);
+        let sums = [
+            // Along the level direction, and upwards.
+            [level, 0.5 * square],
+            [cosine * square / 3.0, (1.0 - sine * sine * sine) / 3.0],
+        ];
+        for (open, [level, up]) in open.iter_mut().zip(sums) {
+            let half = (*direction * level).extend(up) * (0.5 * share);
+            open.towards += half;
+            // The other half for the normal that the corner has.
+            open.even += normal.dot(half);
+        }
+    }
+    open
+}
+
+/// The light of a sky over a surface with a normal.
+fn from_sky([even, high]: [Open; 2], normal: DVec3, sky: &Sky) -> SkyLight {
+    let (even, high) = (even.on(normal), high.on(normal));
+    let above = 0.5 * (1.0 + normal.z);
+    let openness = (even / above.max(1e-6)).min(1.0);
+    let colour = [0, 1, 2].map(|part| {
+        let of_sky = sky.horizon[part] * even + (sky.zenith[part] - sky.horizon[part]) * high;
+        of_sky + sky.ground[part] * (1.0 - above) * openness
+    });
+    SkyLight { colour, openness }
+}
+
+/// The light of a sky over level ground with nothing in the way.
+pub(super) fn open(sky: &Sky) -> SkyLight {
+    let open = [0.5, 1.0 / 3.0].map(|half| Open {
+        even: half,
+        towards: DVec3::Z * half,
+    });
+    from_sky(open, DVec3::Z, sky)
+}
+
+/// The part of a light that stands above the horizon of a point.
+fn visible(heights: &Heights, point: DVec3, light: &Light) -> f64 {
+    let seen = light.seen(point);
+    let level = seen.direction.truncate();
+    let Some(across) = level.perp().try_normalize() else {
+        // Right above.
+        return 1.0;
+    };
+    let furthest = light.distance(point) * level.length();
+    let strips = if seen.width < NARROW { 1 } else { STRIPS };
+    let (mut clear, mut whole) = (0.0, 0.0);
+    for strip in 0..strips {
+        let aside = (2 * strip + 1) as f64 / strips as f64 - 1.0;
+        let half = (1.0 - aside * aside).sqrt();
+        let middle = seen.direction + (across * (aside * seen.width)).extend(0.0);
+        clear += half * above(heights, point, (middle, half * seen.width, furthest), &seen);
+        whole += half;
+    }
+    clear / whole
+}
+
+/// The part of a strip of a light above the horizon; it reaches `half` up and down from its middle.
+fn above(
+    heights: &Heights,
+    point: DVec3,
+    (middle, half, furthest): (DVec3, f64, f64),
+    seen: &Seen,
+) -> f64 {
+    let Some(direction) = middle.truncate().try_normalize() else {
+        return 1.0;
+    };
+    let rise = heights.horizon(point, direction, furthest).max(0.0);
+    let level = seen.direction.truncate().length();
+    // Along the strip the light rises by `level` and comes nearer by its z: where is it as steep as the horizon?
+    let forward = middle.truncate().length();
+    let below = rise * forward - middle.z;
+    let step = level + rise * seen.direction.z;
+    if half == 0.0 || step <= 0.0 {
+        return f64::from(u8::from(below < 0.0));
+    }
+    (0.5 - 0.5 * below / (step * half)).clamp(0.0, 1.0)
+}
