@@ -107,14 +107,16 @@ impl CellIndex {
             self.spot(copy.cell, copy.shift, point)
         };
         let square = |spot: Spot| spot.border * spot.border;
-        // No cell is nearer than the nearest, so what is known of one spares looking at others.
+        // No cell is nearer than the nearest, so what is known of one spares looking at others; a little more, since it
+        // has been rounded.
         let limit = last.map_or(f64::INFINITY, |last| {
-            square(self.spot(last.cell, last.shift, point))
+            square(self.spot(last.cell, last.shift, point)) * (1.0 + 1e-9)
         });
         let nearest = self
             .tree
             .nearest_within(point, limit, |index| square(spot(index)));
-        spot(nearest.expect("a partition has cells"))
+        // Nothing is nearest to what is no point.
+        spot(nearest.unwrap_or(0))
     }
 
     /// A cell as seen from a point.

@@ -110,6 +110,29 @@ fn outside_all_cells_the_nearest_is_found() {
 }
 
 #[test]
+fn what_was_near_before_changes_nothing_outside() {
+    let partition = quads(6, false);
+    let index = CellIndex::new(&partition);
+    let mut last = index.find(DVec2::splat(-40.0), None);
+    for point in points(5000, 300.0).map(|point| point - 100.0) {
+        let spot = index.find(point, Some(&last));
+        let alone = index.find(point, None);
+        assert_eq!(
+            (spot.cell, spot.border),
+            (alone.cell, alone.border),
+            "{point}"
+        );
+        last = spot;
+    }
+    assert!(
+        index
+            .find(DVec2::splat(f64::NAN), Some(&last))
+            .border
+            .is_nan()
+    );
+}
+
+#[test]
 fn periods_repeat() {
     let partition = quads(5, true);
     let index = CellIndex::new(&partition);
