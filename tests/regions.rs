@@ -1,6 +1,8 @@
 //! Regions: literals, files, meshes and fields, against known areas and by the rules of repair.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+#[path = "regions/cells.rs"]
+mod cells;
 #[path = "regions/files.rs"]
 mod files;
 #[path = "regions/literals.rs"]

@@ -68,6 +68,7 @@ pub static KINDS: &[&Kind] = &[
     &view::KIND,
     &rings::ring_plot::KIND,
     &output::ring_table::KIND,
+    &output::packing_table::KIND,
     &field::direction_field::KIND,
     &partition::square_packing::KIND,
     &partition::cell_fields::KIND,
@@ -84,6 +85,16 @@ pub static KINDS: &[&Kind] = &[
     &region::combine_regions::KIND,
     &region::grow_region::KIND,
     &region::region_field::KIND,
+    &partition::inset_cells::KIND,
+    &partition::cell_attribute::KIND,
+    &partition::cell_table::KIND,
+    &partition::cell_fields::KIND,
+    &partition::cell_value::KIND,
+    &partition::per_cell::KIND,
+    &partition::region_cells::KIND,
+    &partition::split_cells::KIND,
+    &partition::voronoi_split::KIND,
+    &surface::inlay::KIND,
 ];
 
 /// The kind called `name`.

@@ -20,8 +20,17 @@ impl Heights {
         };
         let entry = line.over(self, everything)?.from;
         let above = |distance: f64| origin.z + direction.z * distance;
+        // What lies above everything is not looked at.
+        let below_all = (self.range[1] - origin.z) / direction.z;
+        let rest = Stretch {
+            from: match direction.z < 0.0 {
+                true => below_all.max(0.0),
+                false => 0.0,
+            },
+            ..everything
+        };
         let mut found = None;
-        line.walk(self, (everything, usize::MAX), |square| {
+        line.walk(self, (rest, usize::MAX), |square| {
             let Stretch { from, to } = square.stretch;
             let cell = match square.holds {
                 Holds::Many(greatest) if above(from).min(above(to)) > greatest => {

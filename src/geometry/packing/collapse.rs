@@ -1,5 +1,6 @@
 //! Short edges become corners: where two corners of cells are close together, four stones meet.
 
+use super::simple::is_simple;
 use crate::geometry::assemble::{Corner, Piece, Ring, assemble, weld};
 use crate::geometry::polygon::doubled_area;
 use crate::value::Partition;
@@ -178,7 +179,7 @@ impl Net {
             let is_sound = rings.iter().all(|ring| ring.len() >= 3)
                 && (rings[0].len() >= 4 || !is_quad)
                 && self.area(&rings) > KEPT * before
-                && self.is_simple(&rings[0]);
+                && is_simple(&self.drawn(&rings[0]));
             self.points[a] = kept;
             if !is_sound {
                 return;
@@ -219,20 +220,6 @@ impl Net {
             .iter()
             .map(|ring| doubled_area(&self.drawn(ring)))
             .sum()
-    }
-
-    /// Whether no two edges of a ring cross.
-    fn is_simple(&self, ring: &[Corner]) -> bool {
-        let corners = self.drawn(ring);
-        let count = corners.len();
-        let edge = |index: usize| (corners[index], corners[(index + 1) % count]);
-        let crosses = |one: usize, other: usize| {
-            let ((a, b), (c, d)) = (edge(one), edge(other));
-            let side = |a: DVec2, b: DVec2, point: DVec2| (b - a).perp_dot(point - a);
-            side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
-        };
-        let mut pairs = (0..count).flat_map(|one| (one + 2..count).map(move |other| (one, other)));
-        !pairs.any(|(one, other)| (other + 1) % count != one && crosses(one, other))
     }
 }
 

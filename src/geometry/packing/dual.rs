@@ -4,6 +4,7 @@
 //! rectangle of its size and direction rather than a Voronoi cell of its middle. What the sites of a stone have in common
 //! becomes one cell, and what two stones have in common one straight edge.
 
+use super::simple::is_simple;
 use glam::DVec2;
 use rayon::prelude::*;
 use spade::handles::{DirectedEdgeHandle, FixedFaceHandle, InnerTag};
@@ -37,6 +38,9 @@ pub(crate) struct Mosaic {
     pub(crate) rings: Vec<Vec<u32>>,
 }
 
+/// How often rings are looked at until all are sound.
+const ROUNDS: usize = 8;
+
 type Triangles = DelaunayTriangulation<Site>;
 type Edge<'a> = DirectedEdgeHandle<'a, Site, (), (), ()>;
 
@@ -50,20 +54,43 @@ pub(crate) fn mosaic(sites: Vec<Site>, count: usize) -> Mosaic {
         .map(|vertex| vertex.data().owner)
         .collect();
     hang_together(&triangles, &mut owners, count);
-    // A stone with fewer than three corners gives its place to a neighbour, whose corners change with that.
-    for _ in 0..8 {
-        let rings = rings(&triangles, &owners, count);
+    let mut is_bent = vec![false; count];
+    for _ in 0..ROUNDS {
+        let rings = rings(&triangles, &owners, &is_bent);
+        // A stone with fewer than three corners gives its place to a neighbour, whose corners change with that.
         let too_few: Vec<u32> = (0..count as u32)
             .filter(|stone| (1..3).contains(&rings[*stone as usize].len()))
             .collect();
-        if too_few.is_empty() {
-            return numbered(&triangles, rings);
+        let mosaic = numbered(&triangles, rings);
+        let crossed = mosaic.crossed();
+        if too_few.is_empty() && crossed.is_empty() {
+            return mosaic;
         }
-        too_few
-            .into_iter()
-            .for_each(|stone| give_away(&triangles, &mut owners, |owner| owner == stone));
+        for stone in too_few {
+            give_away(&triangles, &mut owners, |owner| owner == stone);
+        }
+        // The borders of what would cross itself keep their bends.
+        crossed.into_iter().for_each(|stone| is_bent[stone] = true);
     }
-    numbered(&triangles, rings(&triangles, &owners, count))
+    is_bent.fill(true);
+    numbered(&triangles, rings(&triangles, &owners, &is_bent))
+}
+
+impl Mosaic {
+    /// The stones whose rings cross themselves.
+    fn crossed(&self) -> Vec<usize> {
+        let crosses = |stone: &usize| {
+            let corners = self.rings[*stone].iter();
+            let corners: Vec<DVec2> = corners
+                .map(|corner| self.points[*corner as usize])
+                .collect();
+            corners.len() > 3 && !is_simple(&corners)
+        };
+        (0..self.rings.len())
+            .into_par_iter()
+            .filter(crosses)
+            .collect()
+    }
 }
 
 /// Leaves to each stone the largest set of its sites that hang together, and gives the others to neighbours.
@@ -153,10 +180,10 @@ fn root(groups: &mut [u32], index: u32) -> u32 {
 fn rings(
     triangles: &Triangles,
     owners: &[u32],
-    count: usize,
+    is_bent: &[bool],
 ) -> Vec<Vec<FixedFaceHandle<InnerTag>>> {
     let mut is_passed = vec![false; triangles.num_directed_edges()];
-    let mut rings: Vec<(f64, Vec<FixedFaceHandle<InnerTag>>)> = vec![(0.0, vec![]); count];
+    let mut rings: Vec<(f64, Vec<FixedFaceHandle<InnerTag>>)> = vec![(0.0, vec![]); is_bent.len()];
     let owner = |vertex: usize| owners[vertex];
     for edge in triangles.directed_edges() {
         let stone = owner(edge.from().fix().index());
@@ -182,7 +209,8 @@ fn rings(
             before = Some(centre);
             let beyond = owner(at.to().fix().index());
             // Where the outside is beyond, bends stay: the cell is cut off along the border afterwards.
-            if beyond == OUTSIDE || (third != stone && third != beyond) {
+            let is_kept = beyond == OUTSIDE || is_bent[stone as usize] || is_bent[beyond as usize];
+            if is_kept || (third != stone && third != beyond) {
                 ring.push(face.fix());
             }
             at = if third == stone {

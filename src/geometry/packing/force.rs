@@ -66,41 +66,58 @@ impl Force {
     }
 
     /// The sum ψ of the cubics at a point in the particle's frame, in stones.
-    pub(crate) fn strength(&self, point: DVec2) -> f64 {
-        let corners = self.corners[..self.count].iter();
-        let of_corners: f64 = corners
-            .map(|corner| cubic(self.inverse * point.distance(*corner)))
-            .sum();
-        cubic(point.length()) + CORNER * of_corners
+    #[cfg(test)]
+    fn strength(&self, point: DVec2) -> f64 {
+        cubic(point.length()) + self.of_corners(point)
+    }
+
+    /// The share of the corners in the sum.
+    #[inline]
+    fn of_corners(&self, point: DVec2) -> f64 {
+        let mut sum = 0.0;
+        for corner in &self.corners[..self.count] {
+            let square = self.inverse * self.inverse * point.distance_squared(*corner);
+            // Most corners are too far away, so their roots are not taken.
+            if square < 2.25 {
+                sum += (1.25 * square.sqrt() - 2.375) * square + 1.125;
+            }
+        }
+        CORNER * sum
     }
 
     /// The force on another particle at a point in the particle's frame, in stones; none in its very middle.
+    #[inline]
     pub(crate) fn at(&self, point: DVec2) -> DVec2 {
         match self.law {
-            Law::Radial => {
-                let square = point.length_squared();
-                if square > 0.0 {
-                    self.strength(point) * point / square.sqrt()
-                } else {
-                    DVec2::ZERO
-                }
-            }
-            Law::Sources => {
-                let push = |offset: DVec2, distance: f64, scale: f64| {
-                    if distance > 0.0 {
-                        cubic(scale * distance) * offset / distance
-                    } else {
-                        DVec2::ZERO
-                    }
-                };
-                let middle = push(point, point.length(), 1.0);
-                let corners = self.corners[..self.count].iter();
-                corners.fold(middle, |sum, corner| {
-                    let offset = point - *corner;
-                    sum + CORNER * push(offset, offset.length(), self.inverse)
-                })
-            }
+            Law::Radial => point * self.pressure(point.length_squared(), point),
+            Law::Sources => self.of_sources(point),
         }
+    }
+
+    /// The sum of the cubics over the distance, whose square is given.
+    #[inline]
+    fn pressure(&self, square: f64, point: DVec2) -> f64 {
+        if square > 0.0 {
+            let distance = square.sqrt();
+            (cubic(distance) + self.of_corners(point)) / distance
+        } else {
+            0.0
+        }
+    }
+
+    fn of_sources(&self, point: DVec2) -> DVec2 {
+        let push = |offset: DVec2, scale: f64| {
+            let distance = offset.length();
+            if distance > 0.0 {
+                cubic(scale * distance) * offset / distance
+            } else {
+                DVec2::ZERO
+            }
+        };
+        let corners = self.corners[..self.count].iter();
+        corners.fold(push(point, 1.0), |sum, corner| {
+            sum + CORNER * push(point - *corner, self.inverse)
+        })
     }
 }
 

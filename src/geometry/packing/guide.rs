@@ -107,6 +107,35 @@ impl Guide {
 /// Of the directions that are as good as `direction` the one nearest to `frame`.
 pub(crate) fn nearest_turn(direction: DVec2, frame: DVec2, symmetry: u32) -> DVec2 {
     let turn = DVec2::new(frame.dot(direction), frame.perp_dot(direction));
-    let turned = unturned(power(turn.normalize_or(DVec2::X), symmetry), symmetry);
-    frame.rotate(turned)
+    match symmetry {
+        2 if turn.x < 0.0 => -direction,
+        2 => direction,
+        4 if turn.x.abs() >= turn.y.abs() => direction * turn.x.signum(),
+        4 => -direction.perp() * turn.y.signum(),
+        _ => {
+            let turned = power(turn.normalize_or(DVec2::X), symmetry);
+            frame.rotate(unturned(turned, symmetry))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_turn_means_the_same_and_is_near() {
+        let turned = |by: f64| DVec2::new(libm::cos(by), libm::sin(by));
+        for symmetry in [2, 4, 6] {
+            let part = std::f64::consts::TAU / f64::from(symmetry);
+            for at in 0..100 {
+                let direction = turned(0.37 * f64::from(at));
+                let frame = turned(0.83 * f64::from(at));
+                let found = nearest_turn(direction, frame, symmetry);
+                assert!(frame.angle_to(found).abs() <= 0.5 * part + 1e-9);
+                let turns = direction.angle_to(found) / part;
+                assert!((turns - turns.round()).abs() < 1e-9, "{symmetry}: {turns}");
+            }
+        }
+    }
 }

@@ -18,14 +18,15 @@ impl Lattice {
     pub(crate) fn nearest(&self, offset: DVec2) -> DVec2 {
         let rows = offset.y / self.step.y;
         if self.shift == 0.0 {
-            return DVec2::new((offset.x / self.step.x).round(), rows.round()) * self.step;
+            return DVec2::new(rounded(offset.x / self.step.x), rounded(rows)) * self.step;
         }
         let in_row = |row: f64| {
             let moved = self.shift * row;
-            let column = (offset.x / self.step.x - moved).round() + moved;
+            let column = rounded(offset.x / self.step.x - moved) + moved;
             DVec2::new(column, row) * self.step
         };
-        let (below, above) = (in_row(rows.floor()), in_row(rows.floor() + 1.0));
+        let row = rounded(rows - 0.5);
+        let (below, above) = (in_row(row), in_row(row + 1.0));
         let steps = |point: DVec2| ((offset - point) / self.step).length_squared();
         if steps(above) < steps(below) {
             above
@@ -41,6 +42,12 @@ impl Lattice {
             ..*self
         }
     }
+}
+
+/// The nearest whole number, without a call: behind 1.5 * 2^52 there are no places after the point.
+fn rounded(number: f64) -> f64 {
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    (number + WHOLE) - WHOLE
 }
 
 #[cfg(test)]

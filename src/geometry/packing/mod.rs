@@ -17,6 +17,7 @@ mod plan;
 mod position;
 mod relax;
 mod settle;
+mod simple;
 mod start;
 pub(crate) mod statistics;
 mod walls;

@@ -4,7 +4,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 /// Particles that one task looks after.
-pub(crate) const CHUNK: usize = 64;
+pub(crate) const CHUNK: usize = 256;
 
 /// Lists of the particles that are near each particle.
 #[derive(Debug, Default)]

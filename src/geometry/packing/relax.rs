@@ -8,7 +8,7 @@ use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
 /// Rounds.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 20;
 
 /// Farthest neighbour that counts, in stones.
 const REACH: f64 = 1.45;
@@ -117,12 +117,14 @@ impl Relaxation<'_> {
             let most = 0.2 * stone.scale * self.stone.min_element();
             step.clamp_length_max(most)
         };
-        let chunks = (0..stones.len().div_ceil(CHUNK)).into_par_iter();
-        let chunks = chunks.map(|chunk| {
-            let end = stones.len().min((chunk + 1) * CHUNK);
-            (chunk * CHUNK..end).map(step).collect::<Vec<DVec2>>()
+        let mut steps = vec![DVec2::ZERO; stones.len()];
+        let chunks = steps.par_chunks_mut(CHUNK).enumerate();
+        chunks.for_each(|(chunk, steps)| {
+            for (within, place) in steps.iter_mut().enumerate() {
+                *place = step(chunk * CHUNK + within);
+            }
         });
-        chunks.flatten_iter().collect()
+        steps
     }
 
     /// What a neighbour asks of a stone that lies `offset` from it.

@@ -15,7 +15,7 @@ const DAMPING: f64 = 1.5;
 const AT_REST: f64 = 1e-3;
 
 /// How much farther than the force reaches neighbours are listed, in stones.
-const SKIN: f64 = 0.25;
+const SKIN: f64 = 0.16;
 
 /// Steps after which directions are read anew.
 const TURNED: usize = 8;
@@ -43,6 +43,7 @@ impl Dynamics<'_> {
         go_on: &mut dyn FnMut(f64) -> Result<(), E>,
     ) -> Result<(), E> {
         let mut speeds = vec![DVec2::ZERO; stones.len()];
+        let mut forces = speeds.clone();
         let mut neighbours = Neighbours::default();
         let mut moved = f64::INFINITY;
         let size = self.stone.max_element();
@@ -64,13 +65,13 @@ impl Dynamics<'_> {
                 neighbours = self.neighbours(stones);
                 moved = 0.0;
             }
-            let places = places(stones, &neighbours);
-            let forces = self.forces(stones, &neighbours, &places);
+            let sources = sources(stones, &neighbours);
+            self.forces(stones, &neighbours, &sources, &mut forces);
             let mut largest: f64 = 0.0;
             let mut fastest: f64 = 0.0;
-            for ((stone, speed), force) in stones.iter_mut().zip(&mut speeds).zip(forces) {
+            for ((stone, speed), force) in stones.iter_mut().zip(&mut speeds).zip(&forces) {
                 if !stone.is_fixed {
-                    *speed = (*speed + STEP * force) / (1.0 + STEP * DAMPING);
+                    *speed = (*speed + STEP * *force) / (1.0 + STEP * DAMPING);
                     stone.point += STEP * *speed;
                     largest = largest.max(force.length_squared());
                     fastest = fastest.max(speed.length_squared());
@@ -108,37 +109,46 @@ impl Dynamics<'_> {
     }
 
     /// The force on every particle: the sum over its neighbours in the order of their list.
-    fn forces(&self, stones: &[Stone], neighbours: &Neighbours, places: &[DVec2]) -> Vec<DVec2> {
-        let of = |index: usize| {
+    fn forces(
+        &self,
+        stones: &[Stone],
+        neighbours: &Neighbours,
+        sources: &[Stone],
+        forces: &mut [DVec2],
+    ) {
+        let inverse = 1.0 / self.stone;
+        let on = |index: usize| {
             let stone = &stones[index];
-            if stone.is_fixed {
-                return DVec2::ZERO;
-            }
             let mut sum = DVec2::ZERO;
             for source in neighbours.of(index) {
-                let other = &stones[neighbours.sources[*source as usize].0 as usize];
+                let other = &sources[*source as usize];
                 let scale = 0.5 * (stone.scale + other.scale);
-                let within = other.within(stone.point - places[*source as usize]);
-                let within = within / (scale * self.stone);
+                let within = other.within(stone.point - other.point) * inverse / scale;
                 if within.length_squared() < REACH * REACH {
                     sum += other.frame.rotate(self.force.at(within) * self.stone) * scale;
                 }
             }
             sum
         };
-        let chunks = (0..stones.len().div_ceil(CHUNK)).into_par_iter();
-        let chunks = chunks.map(|chunk| {
-            let end = stones.len().min((chunk + 1) * CHUNK);
-            (chunk * CHUNK..end).map(of).collect::<Vec<DVec2>>()
+        let chunks = forces.par_chunks_mut(CHUNK).enumerate();
+        chunks.for_each(|(chunk, forces)| {
+            for (within, force) in forces.iter_mut().enumerate() {
+                let index = chunk * CHUNK + within;
+                if !stones[index].is_fixed {
+                    *force = on(index);
+                }
+            }
         });
-        chunks.flatten_iter().collect()
     }
 }
 
-/// Where all sources of force are.
-fn places(stones: &[Stone], neighbours: &Neighbours) -> Vec<DVec2> {
+/// All that forces come from, images of neighbouring periods too.
+fn sources(stones: &[Stone], neighbours: &Neighbours) -> Vec<Stone> {
     let sources = neighbours.sources.iter();
-    sources
-        .map(|(index, by)| stones[*index as usize].point + *by)
-        .collect()
+    let source = |(index, by): &(u32, DVec2)| {
+        let stone = stones[*index as usize];
+        let point = stone.point + *by;
+        Stone { point, ..stone }
+    };
+    sources.map(source).collect()
 }

@@ -76,12 +76,7 @@ impl<'a> Maker<'a> {
             self.corners.join(self.dual);
             parts = self.parts();
         }
-        let found = |vertex: &Option<FixedVertexHandle>| {
-            let place = vertex.map(|vertex| [vertex.index() / CHUNK, vertex.index() % CHUNK]);
-            place.filter(|[part, cell]| !parts[*part].range(*cell).is_empty())
-        };
-        let places: Vec<Option<[usize; 2]>> = vertices.iter().map(found).collect();
-        gather(&parts, &places, self.scale)
+        gather(&parts, vertices, self.scale)
     }
 
     fn parts(&self) -> Vec<Part> {
@@ -182,50 +177,70 @@ impl Part {
     }
 }
 
-/// Puts the cells of the parts into order, those whose places are known.
-fn gather(parts: &[Part], places: &[Option<[usize; 2]>], scale: &Scale) -> Option<Partition> {
-    let kept: Vec<u32> = (0..places.len() as u32)
-        .filter(|seed| places[*seed as usize].is_some())
-        .collect();
-    let last = *kept.last()?;
-    let is_whole = last as usize + 1 == kept.len();
-    let number = |seed: u32| match seed {
-        FAR => Partition::NONE,
-        seed if is_whole => seed,
-        seed => kept
-            .binary_search(&seed)
-            .map_or(Partition::NONE, |cell| cell as u32),
-    };
+/// Puts the cells of the parts into the order of the seeds with these vertices.
+fn gather(
+    parts: &[Part],
+    vertices: &[Option<FixedVertexHandle>],
+    scale: &Scale,
+) -> Option<Partition> {
     let total = parts.iter().map(|part| part.corners.len()).sum();
+    let count = vertices.len();
     let mut partition = Partition {
         corners: Vec::with_capacity(total),
         neighbours: Vec::with_capacity(total),
-        rings: Vec::with_capacity(kept.len() + 1),
-        cells: (0..=kept.len() as u32).collect(),
-        centres: Vec::with_capacity(kept.len()),
-        frames: vec![DVec2::X; kept.len()],
-        areas: Vec::with_capacity(kept.len()),
-        ids: kept.clone(),
+        rings: Vec::with_capacity(count + 1),
+        centres: Vec::with_capacity(count),
+        areas: Vec::with_capacity(count),
+        ids: Vec::with_capacity(count),
         period: scale.repeats.then_some(scale.high * scale.unit),
         ..Partition::default()
     };
     partition.rings.push(0);
-    for [part, cell] in places.iter().flatten() {
-        let (part, cell) = (&parts[*part], *cell);
+    for (seed, vertex) in (0..).zip(vertices) {
+        let Some(vertex) = vertex.map(|vertex| vertex.index()) else {
+            continue;
+        };
+        let (part, cell) = (&parts[vertex / CHUNK], vertex % CHUNK);
         let range = part.range(cell);
+        if range.is_empty() {
+            continue;
+        }
         let corners = part.corners[range.clone()].iter();
         partition.corners.extend(corners.map(|at| scale.place(*at)));
-        let across = part.across[range].iter();
-        partition
-            .neighbours
-            .extend(across.map(|seed| number(*seed)));
+        partition.neighbours.extend(&part.across[range]);
         partition.rings.push(partition.corners.len() as u32);
         partition.centres.push(scale.place(part.centres[cell]));
         partition
             .areas
             .push(part.areas[cell] * scale.unit * scale.unit);
+        partition.ids.push(seed);
     }
-    Some(partition)
+    let cells = partition.ids.len();
+    partition.cells = (0..=cells as u32).collect();
+    partition.frames = vec![DVec2::X; cells];
+    number_neighbours(&mut partition);
+    (cells > 0).then_some(partition)
+}
+
+/// From the numbers of seeds to those of cells.
+fn number_neighbours(partition: &mut Partition) {
+    let Some(last) = partition.ids.last().copied() else {
+        return;
+    };
+    if last as usize + 1 == partition.ids.len() {
+        let stays = |seed: &u32| *seed <= last;
+        let without = partition.neighbours.iter_mut().filter(|seed| !stays(seed));
+        without.for_each(|seed| *seed = Partition::NONE);
+        return;
+    }
+    let mut numbers = vec![Partition::NONE; last as usize + 1];
+    for (number, seed) in (0..).zip(&partition.ids) {
+        numbers[*seed as usize] = number;
+    }
+    for neighbour in &mut partition.neighbours {
+        let number = numbers.get(*neighbour as usize).copied();
+        *neighbour = number.unwrap_or(Partition::NONE);
+    }
 }
 
 /// Area and centre of gravity of a polygon, seen from a point nearby.

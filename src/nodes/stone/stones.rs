@@ -8,6 +8,7 @@
 //! picture. Rims are supersampled, and so are borders of colours.
 
 mod cage;
+mod depth;
 mod form;
 mod grid;
 mod ground;
@@ -97,14 +98,14 @@ pub static KIND: Kind = Kind {
         .on(Domain::Plane),
     ],
     example: r##"(nodes: {
-        "cells": voronoi_split(size: (1000, 1000), seeds: 150),
-        "example": stones(of: "cells", height: 60, bed: 45, optics: [(colour: "#91968f"), (colour: "#7a7e78", weight: 2)]),
+        "cells": voronoi_split(size: (1000, 1000), cell_size: 80),
+        "example": stones(cells: "cells", height: 60, bed: 45, optics: [(colour: "#91968f"), (colour: "#7a7e78", weight: 2)]),
     })"##,
     build,
 };
 
 const INPUTS: &[Input] = &[
-    Input::new("of", Type::Partition, "The cells."),
+    Input::new("cells", Type::Partition, "The cells."),
     Input::new(
         "stone",
         Type::Choice(&["sett", "prism", "round", "corner"]),
@@ -146,10 +147,13 @@ const INPUTS: &[Input] = &[
     Input::new("seed", Type::Whole, "Another number gives other stones; so does the recipe's seed.").default("0"),
 ];
 
+/// Bend within a pixel that does not show, as a share of the stones' height.
+const EVEN: f64 = 0.01;
+
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let table = optics::read(inputs)?;
     let laid = lay(inputs, build, &table)?;
-    let (means, numbers) = columns(&laid, &table);
+    let [colours, optics, chances, numbers] = columns(&laid, &table);
     let find = Find {
         key: laid.ground.key(),
         ground: laid.ground,
@@ -157,28 +161,34 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let found = build.kernel(find, vec![Field::position(Domain::Plane)]);
     let [bed, chips] = ["bed", "chips"].map(|name| inputs.field(name));
     let shown = build.kernel(Show, vec![found.clone(), bed, chips]);
-    let relief = build.kernel(Relief, vec![shown.clone()]);
-    let means = build.kernel(OfStone::new(means, true), vec![found.part(3, 1)]);
-    let numbers = build.kernel(OfStone::new(numbers, false), vec![found.part(3, 1)]);
+    let even = (EVEN * inputs.number("height")) as f32;
+    let relief = build.kernel(Relief { even }, vec![shown.clone()]);
+    let of_stone = |columns: Vec<Vec<f32>>, is_mean| {
+        build.kernel(OfStone::new(columns, is_mean), vec![found.part(3, 1)])
+    };
+    let [colours, optics, chances] =
+        [colours, optics, chances].map(|columns| of_stone(columns, true));
+    let numbers = of_stone(numbers, false);
     let id = build.kernel(Shown, vec![shown.part(1, 1), numbers.part(1, 1)]);
     let fields = [
         relief.part(0, 1),
         relief.part(1, 1),
-        means.part(0, 3),
-        means.part(3, 1),
+        colours,
+        optics.part(0, 1),
         numbers.part(0, 1),
-        means.part(4, 1),
-        means.part(5, 1),
+        optics.part(1, 1),
+        optics.part(2, 1),
         id,
-        means.part(6, 1),
+        chances.part(0, 1),
         relief.part(2, 1),
-        means.part(7, 1),
+        chances.part(1, 1),
     ];
     Ok(fields.map(Value::Field).to_vec())
 }
 
-/// What is averaged over pixels of each stone, and what is not; behind the stones what counts where there is none.
-fn columns(laid: &Laid, table: &[optics::Optics]) -> (Vec<Vec<f32>>, Vec<Vec<f32>>) {
+/// What belongs to each stone: colours, optics and chances, which are averaged over pixels, and numbers, which are not.
+/// Behind the stones stands what counts where there is none.
+fn columns(laid: &Laid, table: &[optics::Optics]) -> [Vec<Vec<f32>>; 4] {
     let column = |value: &dyn Fn(usize) -> f64, none: f64| -> Vec<f32> {
         let stones = (0..laid.records.len()).map(value);
         stones.chain([none]).map(|value| value as f32).collect()
@@ -189,13 +199,13 @@ fn columns(laid: &Laid, table: &[optics::Optics]) -> (Vec<Vec<f32>>, Vec<Vec<f32
             value(&table[0]),
         )
     };
-    let means = vec![
-        of_record(&|record| record.colour[0]),
-        of_record(&|record| record.colour[1]),
-        of_record(&|record| record.colour[2]),
+    let colours = [0, 1, 2].map(|part| of_record(&|record| record.colour[part]));
+    let optics = vec![
         of_record(&|record| record.roughness),
         of_record(&|record| record.specular),
         of_record(&|record| record.exponent),
+    ];
+    let chances = vec![
         column(&|stone| laid.shares[stone], 0.0),
         column(&|stone| laid.tilts[stone], 0.0),
     ];
@@ -203,5 +213,5 @@ fn columns(laid: &Laid, table: &[optics::Optics]) -> (Vec<Vec<f32>>, Vec<Vec<f32
         column(&|stone| laid.records[stone] as f64, 0.0),
         column(&|stone| f64::from(laid.ids[stone]) + 1.0, 0.0),
     ];
-    (means, numbers)
+    [colours.to_vec(), optics, chances, numbers]
 }

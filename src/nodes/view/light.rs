@@ -9,7 +9,7 @@ use super::scene::{Point, Scene};
 use crate::key::KeyHasher;
 use crate::node::{Failure, Input};
 use crate::value::{Type, Unit, Value};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use std::f64::consts::PI;
 
 /// The parts of an item of the input `lights`.
@@ -283,8 +283,6 @@ pub(super) struct Sky {
     pub(super) ground: [f64; 3],
     /// Directions of equal solid angle, all around.
     directions: Vec<DVec3>,
-    /// Level directions of equal angles, all around.
-    slices: Vec<DVec2>,
     /// What lies between the ground's light and things that touch it, in mm.
     reach: f64,
 }
@@ -310,14 +308,8 @@ impl Sky {
             horizon: colour("horizon", [0.8; 3]),
             ground: colour("ground", [0.34, 0.33, 0.32]),
             directions: (0..2 * count).map(direction).collect(),
-            slices: slices(count),
             reach,
         }
-    }
-
-    /// Level directions in the middle of equal slices of the sky.
-    pub(super) fn slices(&self) -> &[DVec2] {
-        &self.slices
     }
 
     /// What comes from a direction.
@@ -388,14 +380,4 @@ impl Sky {
         });
         key.whole(self.directions.len() as i64).number(self.reach);
     }
-}
-
-/// Slices around a point that are as many as directions on the way around an even pattern of `count`.
-fn slices(count: usize) -> Vec<DVec2> {
-    let count = (1.5 * (count as f64).sqrt()).round().clamp(8.0, 256.0) as usize;
-    let slice = |index: usize| {
-        let angle = (index as f64 + 0.5) * (2.0 * PI / count as f64);
-        DVec2::new(libm::cos(angle), libm::sin(angle))
-    };
-    (0..count).map(slice).collect()
 }

@@ -44,6 +44,9 @@ const SHADOW: f32 = 0.3;
 /// How much a step of a pixel's width away from the camera counts where edges are looked for.
 const DEPTH: f32 = 0.02;
 
+/// How much the brightness of relief counts where edges are looked for: it has no detail finer than a pixel.
+const RELIEF: f32 = 0.25;
+
 /// Columns before those of what is seen, and before those of how it is lit.
 const SEEN: usize = 3;
 const LIT: usize = SEEN + seen::ALL;
@@ -149,16 +152,16 @@ impl Shade {
         let whole: f32 = lights.iter().map(facing).sum();
         let lit: f32 = lights.iter().map(|lit| facing(lit) * lit.visibility).sum();
         let shadow = (lit + luminance(sky.to_array())).sqrt();
-        let edge = number + whole + SHADOW * shadow + self.depth(place);
+        let edge = match self.stage.scene.relief {
+            Some(_) => number + RELIEF * (whole + SHADOW * shadow) + self.depth(place),
+            None => number + whole + SHADOW * shadow,
+        };
         [light.x, light.y, light.z, edge]
     }
 
     /// What makes edges of a relief before itself count: how far away it is.
     fn depth(&self, place: Vec3) -> f32 {
-        match self.stage.scene.relief {
-            Some(_) => DEPTH * self.stage.camera.pixels_away(place.as_dvec3()) as f32,
-            None => 0.0,
-        }
+        DEPTH * self.stage.camera.pixels_away(place.as_dvec3()) as f32
     }
 
     /// The lights as they reach a place.

@@ -48,9 +48,8 @@ pub(super) fn stage(
             None => studio(&camera),
         });
     }
-    let count = usize::try_from(inputs.whole("samples")).unwrap_or(1);
     Ok(Stage {
-        sky: Sky::read(&Record::of(inputs.get("sky")), count, reach),
+        sky: Sky::read(&Record::of(inputs.get("sky")), directions(inputs), reach),
         scene: Scene {
             things: show.thing.into_iter().collect(),
             relief: show.relief,
@@ -61,6 +60,11 @@ pub(super) fn stage(
         lights,
         disc: Disc::new(),
     })
+}
+
+/// In how many directions above the horizon the sky is looked at.
+fn directions(inputs: &Inputs<'_>) -> usize {
+    usize::try_from(inputs.whole("samples")).unwrap_or(1)
 }
 
 /// What is shown.
@@ -142,6 +146,7 @@ fn of_relief(inputs: &Inputs<'_>, build: &Build<'_>, pixels: [f64; 2]) -> Result
         factor: number("relief").unwrap_or(1.0),
         thickness: number("thickness"),
         finest: flat.finest(size),
+        directions: directions(inputs),
     };
     let relief = Relief::new(material, &layout, build)?;
     Ok(Show {

@@ -69,6 +69,8 @@ pub(super) fn lay(
         let mut random = random.of_item(row as u32);
         let moved = match rows.bond {
             "random" => f64::from(random.share()),
+            // Joints of boards of unequal lengths would meet only where all rows begin.
+            _ if rows.lengths[0] != rows.lengths[1] => f64::from(random.share()),
             _ => row.rem_euclid(rows.cycle()) as f64 / rows.cycle() as f64,
         };
         let joints = joints(window, along, rows.lengths, moved, &mut random);

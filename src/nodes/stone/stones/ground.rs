@@ -1,9 +1,9 @@
 //! All stones of a partition, and which of them is on top at a point.
 
 use super::cage::Cage;
+use super::depth::{Outline, Outlines};
 use super::form::Form;
 use super::grid::Grid;
-use super::outline::{Segment, depth};
 use crate::key::{Key, KeyHasher};
 use glam::{DVec2, DVec3, Vec2};
 use std::collections::BTreeMap;
@@ -17,8 +17,7 @@ pub(super) struct Stone {
     /// The box around its outline and all that is seen of it.
     pub(super) low: Vec2,
     pub(super) high: Vec2,
-    /// Its outline, in the list of all.
-    pub(super) segments: Range<u32>,
+    pub(super) outline: Outline,
     /// The corners of its prism below and on top, in the list of all; none for a sett.
     pub(super) corners: Range<u32>,
     /// Height of the top, and how it rises along x and y.
@@ -50,7 +49,7 @@ pub(super) struct Found {
 #[derive(Debug)]
 pub(super) struct Ground {
     pub(super) stones: Vec<Stone>,
-    pub(super) segments: Vec<Segment>,
+    pub(super) outlines: Outlines,
     pub(super) corners: Vec<DVec3>,
     /// The surfaces over prisms of so many corners; none for setts.
     pub(super) cages: BTreeMap<usize, Cage>,
@@ -72,7 +71,7 @@ impl Ground {
         let mut key = KeyHasher::new("stones", 1);
         self.grid.add_to_key(&mut key);
         for stone in &self.stones {
-            let lengths = [&stone.segments, &stone.corners].map(|range| range.len() as f64);
+            let lengths = [stone.corners.len() as f64];
             let worn = stone.worn.unwrap_or([f32::MAX; 2]);
             let numbers = [
                 stone.top,
@@ -93,9 +92,9 @@ impl Ground {
                 key.number(number);
             });
         }
-        let segments = self.segments.iter().flat_map(Segment::parts).map(f64::from);
+        let outlines = self.outlines.numbers().map(f64::from);
         let corners = self.corners.iter().flat_map(DVec3::to_array);
-        segments.chain(corners).for_each(|number| {
+        outlines.chain(corners).for_each(|number| {
             key.number(number);
         });
         key.finish()
@@ -124,8 +123,7 @@ impl Ground {
     #[inline]
     fn look_at(&self, number: u32, point: Vec2, hand: &mut Hand, found: &mut Found) {
         let stone = &self.stones[number as usize];
-        let range = stone.segments.start as usize..stone.segments.end as usize;
-        let depth = depth(&self.segments[range], point);
+        let depth = self.outlines.depth(&stone.outline, point);
         let height = match stone.corners.is_empty() {
             true => stone.sett(depth, point),
             false => self.form(number, hand).height(point),

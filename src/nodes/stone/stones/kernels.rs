@@ -89,11 +89,16 @@ impl Kernel for Show {
 
 /// The first three columns of [`Show`], averaged over pixels where they bend.
 #[derive(Debug)]
-pub(super) struct Relief;
+pub(super) struct Relief {
+    /// Bend in mm that does not show.
+    pub(super) even: f32,
+}
 
 impl Kernel for Relief {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("relief of stones").whole(i64::from(KIND.version));
+        key.text("relief of stones")
+            .whole(i64::from(KIND.version))
+            .number(f64::from(self.even));
     }
 
     fn width(&self) -> usize {
@@ -103,8 +108,8 @@ impl Kernel for Relief {
     fn sampling(&self) -> Sampling {
         Sampling::FilteredWhereStraight {
             column: 3,
-            absolute: 0.1,
-            relative: 0.05,
+            absolute: self.even,
+            relative: 0.1,
         }
     }
 

@@ -2,10 +2,11 @@
 
 use super::KIND;
 use super::cage::{Cage, Cut};
+use super::depth::{Outline, Outlines};
 use super::grid::Grid;
 use super::ground::{FORMS, Ground, Stone};
 use super::optics::{Optics, pick};
-use super::outline::{self, Segment};
+use super::outline;
 use crate::node::{Build, Failure, Inputs};
 use crate::nodes::random::Random;
 use crate::value::Partition;
@@ -77,7 +78,7 @@ pub(super) fn lay(
     build: &Build<'_>,
     table: &[Optics],
 ) -> Result<Laid, Failure> {
-    let partition = inputs.partition("of");
+    let partition = inputs.partition("cells");
     let manner = Manner::read(inputs);
     let grounds = Grounds::sample(inputs, build, partition)?;
     let seed = stream(build.seed, inputs.whole("seed"));
@@ -85,7 +86,7 @@ pub(super) fn lay(
         manner,
         cages: BTreeMap::new(),
         stones: vec![],
-        segments: vec![],
+        outlines: Outlines::default(),
         corners: vec![],
     };
     let (mut records, mut ids, mut shares, mut tilts) = (vec![], vec![], vec![], vec![]);
@@ -183,7 +184,7 @@ struct Laying {
     manner: Manner,
     cages: BTreeMap<usize, Cage>,
     stones: Vec<Stone>,
-    segments: Vec<Segment>,
+    outlines: Outlines,
     corners: Vec<DVec3>,
 }
 
@@ -210,7 +211,7 @@ impl Laying {
             centre: partition.centres[cell],
             low: Vec2::ZERO,
             high: Vec2::ZERO,
-            segments: 0..0,
+            outline: Outline::Any(0..0),
             corners: 0..0,
             top: top as f32,
             slope: (at.slope + DVec2::from_array(lean)).as_vec2(),
@@ -251,10 +252,8 @@ impl Laying {
             .map(|corner| corner.length_squared())
             .fold(0.0, f64::max);
         stone.half = (1.0 / radius.max(1e-12)) as f32;
-        self.outline(
-            stone,
-            &outline::rounded(&corners, manner.corner_radius * by_chance),
-        );
+        let radius = manner.corner_radius * by_chance;
+        self.outline(stone, &corners, radius);
     }
 
     /// Makes it a prism, or what is cut of one.
@@ -282,7 +281,7 @@ impl Laying {
         let first = self.corners.len() as u32;
         self.corners.extend(corners.iter().copied());
         stone.corners = first..self.corners.len() as u32;
-        self.outline(stone, base);
+        self.outline(stone, base, 0.0);
         for corner in corners {
             stone.low = stone.low.min(corner.truncate().as_vec2());
             stone.high = stone.high.max(corner.truncate().as_vec2());
@@ -290,10 +289,8 @@ impl Laying {
     }
 
     /// Gives the stone its outline, and the box around it.
-    fn outline(&mut self, stone: &mut Stone, corners: &[DVec2]) {
-        let first = self.segments.len() as u32;
-        self.segments.extend(outline::segments(corners));
-        stone.segments = first..self.segments.len() as u32;
+    fn outline(&mut self, stone: &mut Stone, corners: &[DVec2], radius: f64) {
+        stone.outline = self.outlines.add(corners, radius);
         let flat = || corners.iter().map(|corner| corner.as_vec2());
         stone.low = flat().fold(Vec2::INFINITY, Vec2::min);
         stone.high = flat().fold(Vec2::NEG_INFINITY, Vec2::max);
@@ -313,7 +310,7 @@ impl Laying {
                 .take(kept)
                 .collect(),
             stones: self.stones,
-            segments: self.segments,
+            outlines: self.outlines,
             corners: self.corners,
             cages: self.cages,
         }

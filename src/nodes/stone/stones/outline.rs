@@ -1,7 +1,8 @@
-//! Outlines of stones: from cells, narrower by the joint, with rounded corners; and how far a point is from one.
+//! Outlines of stones: from cells, narrower by the joint, with rounded corners.
 
 use crate::value::Partition;
-use glam::{DVec2, Vec2};
+use glam::DVec2;
+use std::f64::consts::PI;
 
 /// Arcs are drawn with a corner at least every so many radians.
 const ARC: f64 = 0.3;
@@ -68,12 +69,12 @@ fn doubled_area(corners: &[DVec2]) -> f64 {
     edges(corners).map(|[from, to]| from.perp_dot(to)).sum()
 }
 
-fn edges(corners: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> + Clone {
+pub(super) fn edges(corners: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> + Clone {
     let count = corners.len();
     (0..count).map(move |index| [corners[index], corners[(index + 1) % count]])
 }
 
-fn is_convex(corners: &[DVec2]) -> bool {
+pub(super) fn is_convex(corners: &[DVec2]) -> bool {
     let count = corners.len();
     edges(corners)
         .enumerate()
@@ -133,6 +134,20 @@ fn mitred(corners: &[DVec2], lengths: &[f64]) -> Option<Vec<DVec2>> {
     is_sound.then_some(moved)
 }
 
+/// For each corner the radius to which it can be rounded, where edges are short less than the one that is wanted.
+pub(super) fn radii(corners: &[DVec2], radius: f64) -> Vec<f64> {
+    let count = corners.len();
+    let of_corner = |index: usize| {
+        let [before, after] =
+            [count - 1, 1].map(|step| corners[(index + step) % count] - corners[index]);
+        let [short, long] = [before.length(), after.length()];
+        let turn = PI - libm::acos((before.dot(after) / (short * long)).clamp(-1.0, 1.0));
+        let reach = libm::tan(0.5 * turn);
+        radius.min(0.45 * short.min(long) / reach.max(1e-9))
+    };
+    (0..count).map(of_corner).collect()
+}
+
 /// An outline with corners rounded to a radius, or less where edges are short.
 pub(super) fn rounded(corners: &[DVec2], radius: f64) -> Vec<DVec2> {
     let count = corners.len();
@@ -141,7 +156,7 @@ pub(super) fn rounded(corners: &[DVec2], radius: f64) -> Vec<DVec2> {
         let [before, after] = [count - 1, 1].map(|step| corners[(index + step) % count] - *corner);
         let [short, long] = [before.length(), after.length()];
         let (back, ahead) = (before / short, after / long);
-        let turn = std::f64::consts::PI - libm::acos(back.dot(ahead).clamp(-1.0, 1.0));
+        let turn = PI - libm::acos(back.dot(ahead).clamp(-1.0, 1.0));
         let reach = libm::tan(0.5 * turn);
         let tangent = (radius * reach).min(0.45 * short.min(long));
         let steps = (turn / ARC).ceil();
@@ -160,49 +175,4 @@ pub(super) fn rounded(corners: &[DVec2], radius: f64) -> Vec<DVec2> {
         rounded.push(to);
     }
     rounded
-}
-
-/// An edge of an outline, ready for distances.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
-    from: Vec2,
-    along: Vec2,
-    /// 1 over the length's square.
-    scale: f32,
-}
-
-/// The edges of an outline.
-pub(super) fn segments(corners: &[DVec2]) -> impl Iterator<Item = Segment> {
-    edges(corners).map(|[from, to]| {
-        let along = (to - from).as_vec2();
-        Segment {
-            from: from.as_vec2(),
-            along,
-            scale: 1.0 / along.length_squared().max(f32::MIN_POSITIVE),
-        }
-    })
-}
-
-/// How far a point is inside an outline; below 0 outside.
-#[inline]
-pub(super) fn depth(segments: &[Segment], point: Vec2) -> f32 {
-    let (mut nearest, mut is_inside) = (f32::INFINITY, false);
-    for segment in segments {
-        let from = point - segment.from;
-        let share = (from.dot(segment.along) * segment.scale).clamp(0.0, 1.0);
-        nearest = nearest.min((from - segment.along * share).length_squared());
-        // Edges that the ray to the right crosses.
-        let is_across = (from.y < 0.0) != (from.y < segment.along.y);
-        let is_beyond = (from.perp_dot(segment.along) > 0.0) == (segment.along.y > 0.0);
-        is_inside ^= is_across && !is_beyond;
-    }
-    let distance = nearest.sqrt();
-    if is_inside { distance } else { -distance }
-}
-
-impl Segment {
-    /// All its numbers, for keys.
-    pub(super) fn parts(&self) -> [f32; 4] {
-        [self.from.x, self.from.y, self.along.x, self.along.y]
-    }
 }

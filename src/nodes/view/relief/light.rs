@@ -31,6 +31,8 @@ const NARROW: f64 = 0.03;
 /// The light at the corners of a grid of heights.
 #[derive(Debug)]
 pub(super) struct LightMap {
+    /// Level directions in the middle of equal slices of the sky.
+    slices: Vec<DVec2>,
     /// Tiles in a row.
     columns: usize,
     /// For each tile its corners one after the other: [`OF_SKY`] numbers of the sky, and one for each light.
@@ -52,10 +54,11 @@ impl Open {
 }
 
 impl LightMap {
-    /// A map of nothing yet.
-    pub(super) fn over(heights: &Heights) -> LightMap {
+    /// A map of nothing yet, for a sky that is looked at in so many directions above the horizon.
+    pub(super) fn over(heights: &Heights, directions: usize) -> LightMap {
         let [columns, rows] = heights.cells().map(|cells| (cells + 1).div_ceil(TILE));
         LightMap {
+            slices: slices(directions),
             columns,
             tiles: (0..columns * rows).map(|_| OnceLock::new()).collect(),
         }
@@ -77,8 +80,8 @@ impl LightMap {
             );
         }
         let numbers = match point.surface {
-            0 => at(&relief.heights, point.place, point.normal, sky, lights),
-            _ => self.blended(relief, point.coordinates, sky, lights),
+            0 => at(relief, point.place, point.normal, lights),
+            _ => self.blended(relief, point.coordinates, lights),
         };
         let open = |first: usize| Open {
             even: numbers[first],
@@ -89,7 +92,7 @@ impl LightMap {
     }
 
     /// What is between the corners of a cell.
-    fn blended(&self, relief: &Relief, place: DVec2, sky: &Sky, lights: &[Light]) -> Vec<f64> {
+    fn blended(&self, relief: &Relief, place: DVec2, lights: &[Light]) -> Vec<f64> {
         let ([x, y], at) = relief.heights.cell_at(place);
         let mut sum = vec![0.0; OF_SKY + lights.len()];
         for (corner, weight) in [
@@ -98,22 +101,16 @@ impl LightMap {
             ([x, y + 1], (1.0 - at.x) * at.y),
             ([x + 1, y + 1], at.x * at.y),
         ] {
-            for (sum, number) in sum.iter_mut().zip(self.corner(relief, corner, sky, lights)) {
+            for (sum, number) in sum.iter_mut().zip(self.corner(relief, corner, lights)) {
                 *sum += f64::from(*number) * weight;
             }
         }
         sum
     }
 
-    fn corner<'a>(
-        &'a self,
-        relief: &Relief,
-        [x, y]: [usize; 2],
-        sky: &Sky,
-        lights: &[Light],
-    ) -> &'a [f32] {
+    fn corner<'a>(&'a self, relief: &Relief, [x, y]: [usize; 2], lights: &[Light]) -> &'a [f32] {
         let [column, row] = [x / TILE, y / TILE];
-        let make = || tile(relief, [column * TILE, row * TILE], sky, lights);
+        let make = || tile(relief, [column * TILE, row * TILE], lights);
         let tile = self.tiles[row * self.columns + column].get_or_init(make);
         let width = OF_SKY + lights.len();
         &tile[(y % TILE * TILE + x % TILE) * width..][..width]
@@ -121,7 +118,7 @@ impl LightMap {
 }
 
 /// The numbers of the corners of a tile; those beyond the grid are 0.
-fn tile(relief: &Relief, first: [usize; 2], sky: &Sky, lights: &[Light]) -> Vec<f32> {
+fn tile(relief: &Relief, first: [usize; 2], lights: &[Light]) -> Vec<f32> {
     let heights = &relief.heights;
     let width = OF_SKY + lights.len();
     let mut tile = vec![0.0; TILE * TILE * width];
@@ -132,7 +129,7 @@ fn tile(relief: &Relief, first: [usize; 2], sky: &Sky, lights: &[Light]) -> Vec<
         }
         let place = heights.place(corner);
         let point = place.extend(heights.corner(corner));
-        let found = at(heights, point, relief.normal(place), sky, lights);
+        let found = at(relief, point, relief.normal(place), lights);
         for (number, found) in numbers.iter_mut().zip(found) {
             *number = found as f32;
         }
@@ -141,8 +138,9 @@ fn tile(relief: &Relief, first: [usize; 2], sky: &Sky, lights: &[Light]) -> Vec<
 }
 
 /// What a point with a normal sees of the sky and of the lights.
-fn at(heights: &Heights, point: DVec3, normal: DVec3, sky: &Sky, lights: &[Light]) -> Vec<f64> {
-    let open = around(heights, point, normal, sky);
+fn at(relief: &Relief, point: DVec3, normal: DVec3, lights: &[Light]) -> Vec<f64> {
+    let heights = &relief.heights;
+    let open = around(heights, point, normal, &relief.map.slices);
     let of_sky = open.iter().flat_map(|open| {
         let [x, y, z] = open.towards.to_array();
         [open.even, x, y, z]
@@ -156,8 +154,7 @@ fn at(heights: &Heights, point: DVec3, normal: DVec3, sky: &Sky, lights: &[Light
 /// In a slice of the sky between its horizon and the zenith, with e the elevation and n.x the part of the normal
 /// towards the slice, a surface faces by n.x cos e + n.z sin e; this times cos e, and sin e for the second, is
 /// integrated as it is.
-fn around(heights: &Heights, point: DVec3, normal: DVec3, sky: &Sky) -> [Open; 2] {
-    let slices = sky.slices();
+fn around(heights: &Heights, point: DVec3, normal: DVec3, slices: &[DVec2]) -> [Open; 2] {
     let share = 2.0 / slices.len() as f64;
     let mut open = [Open::default(); 2];
     for direction in slices {
@@ -270,4 +267,14 @@ fn above(
     let below = rise * forward - middle.z;
     let step = level + rise * seen.direction.z;
     (0.5 - 0.5 * below / (step * half)).clamp(0.0, 1.0)
+}
+
+/// Slices around a point, about as many as there are directions along the rim of an even pattern of `count`.
+fn slices(count: usize) -> Vec<DVec2> {
+    let count = (1.5 * (count as f64).sqrt()).round().clamp(8.0, 256.0) as usize;
+    let slice = |index: usize| {
+        let angle = (index as f64 + 0.5) * (2.0 * PI / count as f64);
+        DVec2::new(libm::cos(angle), libm::sin(angle))
+    };
+    (0..count).map(slice).collect()
 }

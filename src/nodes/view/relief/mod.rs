@@ -42,6 +42,8 @@ pub(super) struct Layout {
     pub(super) thickness: Option<f64>,
     /// The side of what a pixel shows of the piece where it shows least, in mm.
     pub(super) finest: f64,
+    /// In how many directions the sky is looked at.
+    pub(super) directions: usize,
 }
 
 /// The thickness of a piece that states none, as a share of its mean side.
@@ -83,7 +85,7 @@ impl Relief {
         }
         Ok(Relief {
             bottom: heights.range()[0] - thickness,
-            map: LightMap::over(&heights),
+            map: LightMap::over(&heights, layout.directions),
             heights,
             size,
             key: key.finish(),

@@ -1,0 +1,85 @@
+//! `packing_table`: says how good a packing is, as CSV.
+//!
+//! One row. Angles are between the axes of the stones and the direction field. A joint is measured from the edge of a stone
+//! straight to the next stone, three times along each edge; where a stone is missing it is as wide as the empty place, up to one
+//! and a half stones.
+
+use crate::geometry::packing::direction::Directions;
+use crate::geometry::packing::statistics::{Statistics, measure};
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::value::{Domain, Table, Type, Unit, Value};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// Writes the quality of a packing as CSV.
+pub static KIND: Kind = Kind {
+    name: "packing_table",
+    version: 1,
+    about: "Writes how good a packing is as a CSV file: order, angles to the field, occupancy, joints, overlaps, stones across \
+            the outline; stands in `outputs`.",
+    source: "own construction",
+    inputs: &[
+        Input::new(
+            "of",
+            Type::Partition,
+            "The stones: cells, or what is left of them behind their joints.",
+        ),
+        Input::new("region", Type::Region, "What they were packed into."),
+        Input::new(
+            "direction",
+            Type::Vector(Unit::One),
+            "The direction that they should follow; left out, that of the border.",
+        )
+        .per_point()
+        .of(Domain::Plane)
+        .optional(),
+    ],
+    outputs: &[Output::new("table", Type::Maps, "The file.")],
+    example: "(nodes: {
+        \"court\": region(polygons: [(outline: [(0, 0), (2000, 0), (2000, 1500), (0, 1500)])]),
+        \"stones\": square_packing(region: \"court\", stone: 100),
+    }, outputs: { \"example\": packing_table(of: \"stones\", region: \"court\") })",
+    build,
+};
+
+fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let (partition, region) = (inputs.partition("of"), inputs.region("region"));
+    let directions: Vec<DVec2> = match inputs.optional_field("direction") {
+        Some(field) => {
+            let columns = build.sample(&field, &partition.centres)?;
+            let vectors = columns[0].iter().zip(&columns[1]);
+            let vector = |(x, y): (&f32, &f32)| DVec2::new(f64::from(*x), f64::from(*y));
+            vectors
+                .map(|parts| vector(parts).normalize_or(DVec2::X))
+                .collect()
+        }
+        None => {
+            let border = Directions::of_border(region, 4);
+            let at = |centre: &DVec2| border.at(*centre).direction(4);
+            partition.centres.iter().map(at).collect()
+        }
+    };
+    build.go_on()?;
+    let text = text(&measure(partition, region, &directions));
+    Ok(vec![Value::Table(Arc::new(Table { text }))])
+}
+
+fn text(found: &Statistics) -> String {
+    let [median, nine_in_ten] = found.angles.map(f64::to_degrees);
+    let columns = [
+        ("stones", found.stones as f64),
+        ("angle_median_degrees", median),
+        ("angle_90_percent_degrees", nine_in_ten),
+        ("order", found.order),
+        ("four_corners", found.quads),
+        ("area_variation", found.area_variation),
+        ("occupancy", found.occupancy),
+        ("joint_mm", found.joint),
+        ("joint_variation", found.joint_variation),
+        ("largest_overlap", found.overlap),
+        ("across_outline", found.across as f64),
+    ];
+    let names = columns.map(|column| column.0).join(",");
+    let numbers = columns.map(|column| column.1.to_string()).join(",");
+    format!("{names}\n{numbers}\n")
+}
