@@ -3,7 +3,7 @@
 
 use super::compile::Step;
 
-/// A column and one of its values: where no sample of a block has it, the step need not run.
+/// A column and one of its values: where no sample of a block has it, nor [`Alternatives::ALL`], the step need not run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Guard {
     /// The column with the choice.
@@ -98,10 +98,24 @@ fn read_by(step: &Step, of_step: Readers) -> Vec<(usize, Readers)> {
 /// Inputs of which a kernel reads only those that one of its columns chooses, sample by sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Alternatives {
-    /// The input with the choice, whole numbers from 0 on; inputs up to it have one column each.
+    /// The input with the choice: whole numbers from 0 on, or [`Alternatives::ALL`]; inputs up to it have one column each.
     pub choice: usize,
     /// The first column of the first alternative; the others follow to the end.
     pub first: usize,
     /// Columns of each alternative.
     pub width: usize,
+}
+
+impl Alternatives {
+    /// The choice of samples that read all alternatives.
+    pub const ALL: f32 = -1.0;
+}
+
+impl Guard {
+    /// Whether the choices of a block ask for the step.
+    pub(super) fn is_wanted(&self, choices: &[f32]) -> bool {
+        choices
+            .iter()
+            .any(|choice| *choice == self.value || *choice == Alternatives::ALL)
+    }
 }

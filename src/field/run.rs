@@ -138,7 +138,7 @@ impl Program {
             if context.is_cancelled() {
                 return;
             }
-            let is_wanted = |guard: &Guard| scratch.column(guard.column).contains(&guard.value);
+            let is_wanted = |guard: &Guard| guard.is_wanted(scratch.column(guard.column));
             match (step, stored) {
                 _ if !needed || !guard.as_ref().is_none_or(is_wanted) => {}
                 (Step::Spread { of, along, joins }, _) => {

@@ -99,7 +99,7 @@ impl BoxTree {
 
     /// Shows the items of all leaves whose box touches a box; some of them may not touch it themselves.
     pub(crate) fn visit(&self, [low, high]: [DVec2; 2], show: &mut dyn FnMut(u32)) {
-        let mut waiting = vec![0];
+        let mut waiting = Waiting::new(0);
         while let Some(index) = waiting.pop() {
             let Some(node) = self.nodes.get(index) else {
                 continue;
@@ -107,7 +107,9 @@ impl BoxTree {
             let touches = node.low.cmple(high).all() && node.high.cmpge(low).all();
             match node.second {
                 _ if !touches => {}
-                Some(second) => waiting.extend([second, index + 1]),
+                Some(second) => [second, index + 1]
+                    .into_iter()
+                    .for_each(|child| waiting.push(child)),
                 None => self.items[node.items[0]..node.items[1]]
                     .iter()
                     .for_each(|item| show(*item)),
@@ -121,8 +123,18 @@ impl BoxTree {
         point: DVec2,
         distance_squared: impl Fn(u32) -> f64,
     ) -> Option<u32> {
-        let mut best = (f64::INFINITY, u32::MAX);
-        let mut waiting = vec![(0, self.nodes.first()?.distance_squared(point))];
+        self.nearest_within(point, f64::INFINITY, distance_squared)
+    }
+
+    /// As [`BoxTree::nearest`], of the items whose distance has a square of at most `limit`.
+    pub(crate) fn nearest_within(
+        &self,
+        point: DVec2,
+        limit: f64,
+        distance_squared: impl Fn(u32) -> f64,
+    ) -> Option<u32> {
+        let mut best = (limit, u32::MAX);
+        let mut waiting = Waiting::new((0, self.nodes.first()?.distance_squared(point)));
         while let Some((index, distance)) = waiting.pop() {
             if distance > best.0 {
                 continue;
@@ -143,9 +155,37 @@ impl BoxTree {
             if both[0].1 <= both[1].1 {
                 both.swap(0, 1);
             }
-            waiting.extend(both);
+            both.into_iter().for_each(|child| waiting.push(child));
         }
         (best.1 != u32::MAX).then_some(best.1)
+    }
+}
+
+/// Levels of a tree, at most: each halves its items.
+const DEEPEST: usize = 64;
+
+/// Nodes that wait to be looked at: of each level one at most, and two of the last.
+struct Waiting<T> {
+    nodes: [T; DEEPEST],
+    count: usize,
+}
+
+impl<T: Copy> Waiting<T> {
+    fn new(first: T) -> Waiting<T> {
+        Waiting {
+            nodes: [first; DEEPEST],
+            count: 1,
+        }
+    }
+
+    fn push(&mut self, node: T) {
+        self.nodes[self.count] = node;
+        self.count += 1;
+    }
+
+    fn pop(&mut self) -> Option<T> {
+        self.count = self.count.checked_sub(1)?;
+        Some(self.nodes[self.count])
     }
 }
 

@@ -88,13 +88,6 @@ pub static KINDS: &[&Kind] = &[
     &partition::inset_cells::KIND,
     &partition::cell_attribute::KIND,
     &partition::cell_table::KIND,
-    &partition::cell_fields::KIND,
-    &partition::cell_value::KIND,
-    &partition::per_cell::KIND,
-    &partition::region_cells::KIND,
-    &partition::split_cells::KIND,
-    &partition::voronoi_split::KIND,
-    &surface::inlay::KIND,
 ];
 
 /// The kind called `name`.

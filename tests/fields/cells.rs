@@ -75,8 +75,11 @@ impl Kernel for Choose {
 
     fn evaluate(&self, block: &mut Block<'_>) {
         for (index, output) in block.outputs[0].iter_mut().enumerate() {
-            let chosen = block.inputs[0].values[index] as usize;
-            *output = block.inputs[1 + chosen].values[index];
+            let at = |input: usize| block.inputs[input].values[index];
+            *output = match at(0) {
+                Alternatives::ALL => at(1) + at(2),
+                chosen => at(1 + chosen as usize),
+            };
         }
     }
 }
@@ -151,6 +154,33 @@ fn choices_within_choices_are_right() {
             (true, _) => u.min(v),
             (false, true) => u * v,
             (false, false) => 0.5 * (u + v),
+        };
+        assert_eq!(*value, expected);
+    }
+}
+
+#[test]
+fn where_all_are_read_all_are_computed() {
+    let [u, v] = [0, 1].map(|index| axis(Domain::Plane, index));
+    let edge = Test::new("edge", 1, |block| {
+        for (output, u) in block.outputs[0].iter_mut().zip(block.inputs[0].values) {
+            *output = if *u > 11.0 && *u < 13.0 {
+                Alternatives::ALL
+            } else {
+                f32::from(u8::from(*u > 12.0))
+            };
+        }
+    });
+    let (one, other) = (mean(), product());
+    let chosen = choose(&[&edge.of(&[&u]), &one.of(&[&u, &v]), &other.of(&[&u, &v])]);
+    let picture = &painted(&[chosen], [32, 8], 8, &context())[0];
+    assert_eq!([one.calls(), other.calls()], [2, 3]);
+    for (index, value) in picture.iter().enumerate() {
+        let (u, v) = ((index % 32) as f32 + 0.5, 7.5 - (index / 32) as f32);
+        let expected = match u {
+            u if u < 11.0 => 0.5 * (u + v),
+            u if u < 13.0 => 0.5 * (u + v) + u * v,
+            _ => u * v,
         };
         assert_eq!(*value, expected);
     }

@@ -150,6 +150,7 @@ impl Run {
 
 fn short(event: &Event) -> Option<String> {
     Some(match event {
+        Event::StructureProgress { .. } => return None,
         Event::StructureBuilt { node, .. } => format!("built {node}"),
         Event::StructureReused {
             node,

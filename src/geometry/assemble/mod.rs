@@ -8,7 +8,7 @@ mod split;
 mod weld;
 
 pub(crate) use clip::{clip, clip_from};
-pub(crate) use dissolve::{dissolve, merge_slivers};
+pub(crate) use dissolve::merge_slivers;
 pub(crate) use weld::{Corner, weld};
 
 use crate::geometry::polygon::{Measure, measure};
@@ -49,14 +49,6 @@ impl Ring {
     /// What it encloses.
     pub(crate) fn measure(&self) -> Measure {
         measure(&self.corners, &self.bulges)
-    }
-}
-
-impl Piece {
-    /// What its rings enclose, holes taken away if they run clockwise.
-    pub(crate) fn measure(&self) -> Measure {
-        let rings = self.rings.iter().map(Ring::measure);
-        rings.fold(Measure::default(), |whole, ring| whole + ring)
     }
 }
 

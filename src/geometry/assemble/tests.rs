@@ -1,5 +1,6 @@
 //! Pieces put together, cut and joined.
 
+use super::dissolve::dissolve;
 use super::*;
 use crate::value::{Polygon, Region};
 

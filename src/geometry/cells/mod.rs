@@ -97,25 +97,23 @@ impl CellIndex {
             let spot = is_near.then(|| self.spot(copy.cell, copy.shift, point))?;
             (spot.border >= 0.0).then_some(spot)
         });
-        inside.unwrap_or_else(|| self.nearest(point))
-    }
-
-    /// The id of the cell at a point.
-    pub(crate) fn id_at(&self, point: DVec2) -> u32 {
-        self.partition.ids[self.find(point, None).cell as usize]
+        inside.unwrap_or_else(|| self.nearest(point, last))
     }
 
     /// The cell that is nearest to a point outside all.
-    fn nearest(&self, point: DVec2) -> Spot {
+    fn nearest(&self, point: DVec2, last: Option<&Spot>) -> Spot {
         let spot = |index: u32| {
             let copy = &self.copies[index as usize];
             self.spot(copy.cell, copy.shift, point)
         };
-        let distance_squared = |index: u32| {
-            let border = spot(index).border;
-            border * border
-        };
-        let nearest = self.tree.nearest(point, distance_squared);
+        let square = |spot: Spot| spot.border * spot.border;
+        // No cell is nearer than the nearest, so what is known of one spares looking at others.
+        let limit = last.map_or(f64::INFINITY, |last| {
+            square(self.spot(last.cell, last.shift, point))
+        });
+        let nearest = self
+            .tree
+            .nearest_within(point, limit, |index| square(spot(index)));
         spot(nearest.expect("a partition has cells"))
     }
 

@@ -32,9 +32,19 @@ pub(super) fn cut(rings: &[&[DVec2]], sides: &[Side]) -> Vec<(Vec<DVec2>, Vec<us
         .iter()
         .reduce(|best, next| if size(next) > size(best) { next } else { best });
     let rings = largest.into_iter().flat_map(Polygon::rings);
+    let apart = |ring: &[DVec2]| without_points(ring, 64.0 * lattice.step());
     rings
-        .map(|ring| joined(ring, &sides_of(ring, sides)))
+        .map(apart)
+        .map(|ring| joined(&ring, &sides_of(&ring, sides)))
         .collect()
+}
+
+/// A ring without the edges that are no longer than rounding.
+fn without_points(ring: &[DVec2], near: f64) -> Vec<DVec2> {
+    let before = |index: usize| ring[(index + ring.len() - 1) % ring.len()];
+    let is_apart = |index: &usize| before(*index).distance(ring[*index]) > near;
+    let kept = (0..ring.len()).filter(is_apart);
+    kept.map(|index| ring[index]).collect()
 }
 
 /// A ring without the corners between two edges of one side, which rounding leaves.

@@ -74,7 +74,7 @@ impl Side {
     pub(super) fn between(&self, from: DVec2, to: DVec2) -> impl Iterator<Item = (DVec2, usize)> {
         let near = 1e-9 * self.from.distance(self.to);
         let [start, end] = [from, to].map(|point| self.position(point));
-        let inner = self.edges.iter();
+        let inner = self.edges.iter().skip(1);
         let inner = inner.filter(move |(at, _)| *at > start + near && *at < end - near);
         inner.map(move |(at, edge)| (from + self.along * (at - start), *edge))
     }

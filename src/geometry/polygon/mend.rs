@@ -54,9 +54,7 @@ pub(crate) enum Nothing {
 ///
 /// # Errors
 /// The first ring that encloses nothing.
-pub(crate) fn mend(
-    drawn: &[Polygon],
-) -> Result<(Region, Vec<Fault>), ((usize, Option<usize>), Nothing)> {
+pub(crate) fn mend(drawn: &[Polygon]) -> Result<(Region, Vec<Fault>), (Number, Nothing)> {
     let corners = drawn.iter().flat_map(Polygon::rings).flatten();
     let [low, high] = corners.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| {
         [low.min(*at), high.max(*at)]
@@ -84,7 +82,8 @@ struct Mender {
     faults: Vec<Fault>,
 }
 
-type Number = (usize, Option<usize>);
+/// The polygon, and in it the hole; `None` is the outline.
+pub(crate) type Number = (usize, Option<usize>);
 
 impl Mender {
     fn note(&mut self, wrong: Wrong, ring: Number, at: DVec2) {

@@ -10,7 +10,6 @@ use glam::DVec2;
 use rayon::prelude::*;
 use spade::Triangulation as _;
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
-use std::collections::BTreeMap;
 
 /// The corners, one for each triangle.
 pub(super) struct Corners {
@@ -86,15 +85,19 @@ impl Corners {
             let [a, b] = corners.map(|it| root(&mut parents, it));
             parents[a.max(b) as usize] = a.min(b);
         }
-        let mut groups: BTreeMap<u32, Vec<Site>> = BTreeMap::new();
-        for Pair { corners, sites } in &pairs {
-            let group = groups.entry(root(&mut parents, corners[0])).or_default();
-            group.extend(sites);
-        }
-        for (first, sites) in groups {
-            let place = Place::of_many(sites, self.period);
-            self.places[first as usize] = place.at;
-            if let Some(shift) = self.shifts.get_mut(first as usize) {
+        let mut members: Vec<(u32, u32)> = (0..)
+            .zip(&pairs)
+            .map(|(number, pair)| (root(&mut parents, pair.corners[0]), number))
+            .collect();
+        members.par_sort_unstable();
+        for group in members.chunk_by(|a, b| a.0 == b.0) {
+            let first = group[0].0 as usize;
+            let sites = group
+                .iter()
+                .flat_map(|(_, pair)| pairs[*pair as usize].sites);
+            let place = Place::of_many(sites.collect(), self.period);
+            self.places[first] = place.at;
+            if let Some(shift) = self.shifts.get_mut(first) {
                 *shift = place.shift;
             }
         }

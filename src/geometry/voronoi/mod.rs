@@ -132,6 +132,3 @@ impl Scale {
 fn on_grid(at: DVec2) -> DVec2 {
     (at + 6.0) - 6.0
 }
-
-#[cfg(test)]
-mod tests;

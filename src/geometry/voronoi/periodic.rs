@@ -12,7 +12,7 @@ use spade::Triangulation as _;
 use spade::handles::FixedVertexHandle;
 
 /// Copies reach this many mean distances between seeds at first.
-const REACH: f64 = 3.0;
+const REACH: f64 = 6.0;
 
 /// The cells of seeds in mm.
 pub(super) fn cells<E>(

@@ -2,7 +2,7 @@
 
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output, Varies};
-use crate::value::{Domain, Type, Unit, Value};
+use crate::value::{Type, Unit, Value};
 
 /// Reads a value of the cell around.
 pub static KIND: Kind = Kind {
@@ -66,6 +66,7 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::value::Domain;
 
     #[test]
     fn its_outputs_fit_everywhere() {

@@ -14,7 +14,7 @@
 
 mod zones;
 
-use self::zones::{Cut, Joined, Zones};
+use self::zones::{Cut, Joined, Seen, Zones};
 use super::blend::channels::{Axes, pairs};
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
@@ -137,6 +137,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let cut = Cut::read(inputs);
     let zones = build.kernel(Zones::new(&cut), vec![border, cell]);
     let shares = zones.part(0, 2);
+    let seen = build.kernel(Seen, vec![shares.clone()]);
     let channels = pairs(ground, of, ["ground", "of"], inputs)?;
     let joined = |(name, [a, b]): (String, [Field; 2])| {
         let width = a.width();
@@ -157,7 +158,10 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
             false => {
                 // What the glue does not say is as on the ground.
                 let glue = glue.unwrap_or_else(|| a.clone());
-                build.kernel(Joined { width }, vec![a, glue, b, shares.clone()])
+                build.kernel(
+                    Joined { width },
+                    vec![seen.clone(), shares.clone(), a, glue, b],
+                )
             }
         };
         let field = match name.as_str() {

@@ -318,10 +318,8 @@ fn number(node: &Node<'_, '_>, name: &str) -> f64 {
 /// A property from an attribute, or from `style`, which comes first.
 fn property<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
     let style = node.attribute("style").unwrap_or_default();
-    let declared = style.split(';').filter_map(|part| part.split_once(':'));
-    let in_style = declared
-        .filter(|(property, _)| property.trim() == name)
-        .last();
+    let mut declared = style.split(';').filter_map(|part| part.split_once(':'));
+    let in_style = declared.rfind(|(property, _)| property.trim() == name);
     in_style
         .map(|(_, value)| value.trim())
         .or_else(|| node.attribute(name))

@@ -1,7 +1,7 @@
 //! Ground, gap and inlay as a profile of the distance to the outline.
 
 use super::KIND;
-use crate::field::{Block, Kernel, Sampling};
+use crate::field::{Alternatives, Block, Kernel, Sampling};
 use crate::key::KeyHasher;
 use crate::node::Inputs;
 use crate::nodes::field::profile::{Ends, Piece, Profile};
@@ -119,7 +119,34 @@ impl Kernel for Zones {
     }
 }
 
-/// Columns in: those of the ground, of the glue, and of what is let in; share of glue, share of what is let in.
+/// What is at a point, by the shares of glue and of what is let in: 0 the ground, 1 the glue, 2 what is let in, or more than
+/// one of them.
+#[derive(Debug)]
+pub(super) struct Seen;
+
+impl Kernel for Seen {
+    fn add_to_key(&self, key: &mut KeyHasher) {
+        key.text("seen of inlay").whole(i64::from(KIND.version));
+    }
+
+    fn width(&self) -> usize {
+        1
+    }
+
+    fn evaluate(&self, block: &mut Block<'_>) {
+        let shares = block.inputs[0].values.iter().zip(block.inputs[1].values);
+        for (output, (glue, inlaid)) in block.outputs[0].iter_mut().zip(shares) {
+            *output = match (*glue, *inlaid) {
+                (0.0, 0.0) => 0.0,
+                (1.0, 0.0) => 1.0,
+                (0.0, 1.0) => 2.0,
+                _ => Alternatives::ALL,
+            };
+        }
+    }
+}
+
+/// Columns in: what is seen; shares of glue and of what is let in; those of the ground, of the glue, and of what is let in.
 #[derive(Debug)]
 pub(super) struct Joined {
     /// Columns of each.
@@ -137,16 +164,27 @@ impl Kernel for Joined {
         self.width
     }
 
+    fn alternatives(&self) -> Option<Alternatives> {
+        Some(Alternatives {
+            choice: 0,
+            first: 3,
+            width: self.width,
+        })
+    }
+
     fn evaluate(&self, block: &mut Block<'_>) {
-        let column = |part: usize| block.inputs[part].values;
-        let [glue_share, share] = [0, 1].map(|part| column(3 * self.width + part));
+        let [seen, glue_share, share] = [0, 1, 2].map(|column| block.inputs[column].values);
         for (part, output) in block.outputs.iter_mut().enumerate() {
-            let [ground, glue, inlaid] = [0, 1, 2].map(|which| column(which * self.width + part));
+            let each = [0, 1, 2].map(|which| block.inputs[3 + which * self.width + part].values);
             for (index, output) in output.iter_mut().enumerate() {
-                let rest = 1.0 - glue_share[index] - share[index];
-                *output = ground[index] * rest
-                    + glue[index] * glue_share[index]
-                    + inlaid[index] * share[index];
+                *output = match seen[index] {
+                    Alternatives::ALL => {
+                        let [ground, glue, inlaid] = each.map(|column| column[index]);
+                        let (of_glue, of_inlaid) = (glue_share[index], share[index]);
+                        ground * (1.0 - of_glue - of_inlaid) + glue * of_glue + inlaid * of_inlaid
+                    }
+                    which => each[which as usize][index],
+                };
             }
         }
     }
