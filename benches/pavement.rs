@@ -1,7 +1,7 @@
-//! Stones: the paper's case, 512 x 512 pixels with 400 stones, and as many pixels a stone with up to 100,000 stones.
+//! Stones: the paper's case, 512 x 512 pixels with 400 stones, and up to 100,000 stones of as many pixels each.
 //!
 //! `cargo bench --bench pavement` prints wall time and processor time of the whole texture (height in float, colour and
-//! the index of the optical table) on two threads, and processor time for each stone.
+//! the index of the optical table) on two threads, and processor time for each stone of 8 x 8 pixels.
 
 #[path = "support/clock.rs"]
 mod clock;
@@ -21,9 +21,9 @@ use yosegi::world::Memory;
 
 const ROUNDS: usize = 7;
 
-/// A texture of `side` x `side` stones, each some 26 pixels wide.
-fn recipe(stone: &str, side: u32) -> Graph {
-    let (size, pixels) = (100 * side, (25.6 * f64::from(side)).round());
+/// A texture of `side` x `side` stones in a picture of `pixels` x `pixels`.
+fn recipe(stone: &str, side: u32, pixels: u32) -> Graph {
+    let size = 100 * side;
     let text = format!(
         r##"(
         nodes: {{
@@ -87,14 +87,14 @@ fn milliseconds(graph: &Graph, rounds: usize) -> [f64; 2] {
 
 fn main() {
     for stone in ["sett", "prism", "round", "corner"] {
-        let [wall, busy] = milliseconds(&recipe(stone, 20), ROUNDS);
+        let [wall, busy] = milliseconds(&recipe(stone, 20, 512), ROUNDS);
         println!(
             "{stone}: 400 stones at 512 x 512: {wall:.1} ms on two threads, {busy:.1} ms of processor"
         );
     }
     for side in [32, 100, 316] {
         let rounds = if side > 300 { 1 } else { 3 };
-        let [_, busy] = milliseconds(&recipe("round", side), rounds);
+        let [_, busy] = milliseconds(&recipe("round", side, 8 * side), rounds);
         let stones = side * side;
         println!(
             "{stones} stones: {:.1} us of processor a stone",

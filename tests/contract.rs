@@ -114,7 +114,8 @@ fn recipe(name: &str) -> Graph {
         .unwrap()
 }
 
-/// Renders an output; gives its maps without the normals, which are compared as slopes of the height.
+/// Renders an output; gives its maps without the normals, which are compared as slopes of the height, and the ids, of which
+/// there is no mean.
 fn render(graph: &Graph, output: &str, pixels: [u32; 2], filtering: bool) -> Vec<Picture> {
     let folder = tempfile::tempdir().unwrap();
     let options = Options {
@@ -134,7 +135,7 @@ fn render(graph: &Graph, output: &str, pixels: [u32; 2], filtering: bool) -> Vec
         })
         .unwrap();
     maps.iter()
-        .filter(|map| map.channel != "normal")
+        .filter(|map| !["normal", "id"].contains(&map.channel.as_str()))
         .map(|map| Picture::read(&map.path))
         .collect()
 }
@@ -291,6 +292,14 @@ fn figures_of_virtual_energy_keep_the_contract() {
     keeps_it_from_1024("shibasaki_12", "veneer", [640.0, 400.0], 3.0);
     keeps_it_from_1024("shibasaki_13", "slice", [240.0, 240.0], 3.0);
     keeps_it_from_1024("shibasaki_14", "slice", [300.0, 420.0], 3.0);
+}
+
+#[test]
+fn pavements_keep_the_contract() {
+    keeps_it_from_1024("rubble", "rubble", [1600.0, 1600.0], 10.0);
+    keeps_it_from_1024("running_bond", "bond", [1600.0, 1600.0], 10.0);
+    keeps_it_from_1024("fan_paving", "fan", [2000.0, 2000.0], 10.0);
+    keeps_it_from_1024("sett_tile", "tile", [2000.0, 2000.0], 10.0);
 }
 
 /// Near, and not within: a ramp sees noise that has been averaged within the pixel, and cannot know how much

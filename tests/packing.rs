@@ -260,7 +260,7 @@ fn hexagons_and_oblong_stones_have_their_shapes() {
         of.count() as f64 / partition.len() as f64
     };
     let hexagons = packed(&[ground.clone(), stone.clone(), ("corners", Value::Whole(6))]).unwrap();
-    assert!(with_corners(&hexagons, 6) > 0.8);
+    assert!(with_corners(&hexagons, 6) > 0.6);
     let aspect = ("aspect", Value::Number(2.0));
     let bricks = packed(&[
         ground.clone(),

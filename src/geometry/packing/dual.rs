@@ -72,7 +72,6 @@ pub(crate) fn mosaic(sites: Vec<Site>, count: usize) -> Mosaic {
         // The borders of what would cross itself keep their bends.
         crossed.into_iter().for_each(|stone| is_bent[stone] = true);
     }
-    is_bent.fill(true);
     numbered(&triangles, rings(&triangles, &owners, &is_bent))
 }
 

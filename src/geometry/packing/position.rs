@@ -67,6 +67,7 @@ impl Field<'_> {
             levels.push(coarser);
         }
         let mut level = levels.pop().expect("there is a finest level");
+        self.spread(&mut level);
         loop {
             let rounds = ROUNDS[usize::from(!levels.is_empty())];
             for _ in 0..rounds {
@@ -238,6 +239,49 @@ impl Field<'_> {
         match self.period {
             None => DVec2::ZERO,
             Some(period) => period * ((point - other) / period).round(),
+        }
+    }
+
+    /// Lays one lattice from the place that is held most over all that hangs together with it.
+    fn spread(&self, level: &mut Level) {
+        let held = |sample: &Sample| {
+            sample
+                .walls
+                .iter()
+                .filter(|wall| wall.0 != DVec2::ZERO)
+                .count()
+        };
+        let mut order: Vec<usize> = (0..level.samples.len()).collect();
+        order
+            .sort_by_key(|index| std::cmp::Reverse(level.samples[*index].as_ref().map_or(0, held)));
+        let mut is_laid = vec![false; level.samples.len()];
+        for first in order {
+            if is_laid[first] {
+                continue;
+            }
+            let mut waiting = std::collections::VecDeque::from([first]);
+            while let Some(index) = waiting.pop_front() {
+                let (columns, rows) = (level.columns as i64, level.rows as i64);
+                let (x, y) = (index as i64 % columns, index as i64 / columns);
+                let Some(from) = level.samples[index] else {
+                    continue;
+                };
+                is_laid[index] = true;
+                for (dx, dy) in [(1, 0), (0, 1), (-1, 0), (0, -1)] {
+                    if level.at(x + dx, y + dy).is_none() {
+                        continue;
+                    }
+                    let beside = (y + dy).rem_euclid(rows) * columns + (x + dx).rem_euclid(columns);
+                    if !std::mem::replace(&mut is_laid[beside as usize], true)
+                        && let Some(to) = &mut level.samples[beside as usize]
+                    {
+                        let across = self.across(from.point, to.point);
+                        let nearest = self.nearest(&from, to.point + across) - across;
+                        to.origin = self.held(to, nearest);
+                        waiting.push_back(beside as usize);
+                    }
+                }
+            }
         }
     }
 

@@ -2,14 +2,14 @@
 
 use glam::DVec2;
 
-/// Whether no two edges of a ring cross or touch, but for neighbours in their corner.
+/// Whether no two edges of a ring cross; they may touch.
 pub(super) fn is_simple(corners: &[DVec2]) -> bool {
     let count = corners.len();
     let edge = |index: usize| (corners[index], corners[(index + 1) % count]);
     let side = |a: DVec2, b: DVec2, point: DVec2| (b - a).perp_dot(point - a);
     let crosses = |one: usize, other: usize| {
         let ((a, b), (c, d)) = (edge(one), edge(other));
-        side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
+        side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
     };
     let mut pairs = (0..count).flat_map(|one| (one + 2..count).map(move |other| (one, other)));
     !pairs.any(|(one, other)| (other + 1) % count != one && crosses(one, other))

@@ -11,7 +11,7 @@ use crate::node::interned;
 use crate::value::{Type, Unit, Value};
 
 /// The types of both, then those that only inputs of compounds have.
-const TYPES: [&str; 16] = [
+const TYPES: [&str; 18] = [
     "number",
     "whole",
     "toggle",
@@ -28,6 +28,8 @@ const TYPES: [&str; 16] = [
     "mesh",
     "patches",
     "colour_pattern",
+    "region",
+    "partition",
 ];
 
 fn types(role: Role) -> &'static [&'static str] {

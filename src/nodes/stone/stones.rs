@@ -16,8 +16,6 @@ mod kernels;
 mod laying;
 mod optics;
 mod outline;
-#[cfg(test)]
-mod tests;
 
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};

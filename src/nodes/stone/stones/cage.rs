@@ -39,6 +39,11 @@ fn levels(corners: usize) -> usize {
 impl Cage {
     /// The surface over prisms of `corners` corners.
     pub(super) fn new(corners: usize, cut: Cut) -> Cage {
+        Cage::refined(corners, cut, levels(corners))
+    }
+
+    /// The same after some steps of subdivision.
+    pub(super) fn refined(corners: usize, cut: Cut, levels: usize) -> Cage {
         let mut lattice = Lattice::new(corners);
         match cut {
             Cut::Corner(share) => lattice.add_cornered(share),
@@ -56,7 +61,7 @@ impl Cage {
         let triangles = [lattice.seen, bottom(corners)].concat();
         let mut topology = Topology::new(lattice.vertices.len(), triangles);
         let mut columns = columns(&lattice.vertices);
-        for _ in 0..levels(corners) {
+        for _ in 0..levels {
             columns = columns.iter().map(|it| topology.refined(it)).collect();
             topology = Topology::new(topology.refined_points(), topology.refined_triangles());
             seen *= 4;

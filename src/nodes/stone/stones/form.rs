@@ -158,3 +158,45 @@ fn facet(corners: [DVec3; 3], slopes: [Option<[f64; 2]>; 3]) -> Option<(Facet, [
     let high = flat[0].max(flat[1]).max(flat[2]);
     Some((facet, [low, high]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::cage::Cut;
+    use super::*;
+
+    fn prism() -> [DVec3; 8] {
+        let corner = |index: usize| {
+            let (x, y) = [(-45.0, -50.0), (48.0, -46.0), (50.0, 47.0), (-44.0, 49.0)][index % 4];
+            DVec3::new(x, y, [0.0, 0.0, 0.0, 0.0, 98.0, 103.0, 100.0, 95.0][index])
+        };
+        [0, 1, 2, 3, 4, 5, 6, 7].map(corner)
+    }
+
+    #[test]
+    fn prisms_are_flat_between_their_corners() {
+        let form = Form::new(&Cage::new(4, Cut::Prism), &prism());
+        assert_eq!(form.height(Vec2::new(60.0, 0.0)), None);
+        // Halfway along the edge of the top from 98 to 103.
+        let found = form.height(Vec2::new(1.5, -47.999)).unwrap();
+        assert!((found - 100.5).abs() < 1e-2, "{found}");
+    }
+
+    /// Points of the limit surface after two steps more lie on the form, where it does not stand steep.
+    #[test]
+    fn forms_are_the_limit_surface() {
+        for cut in [Cut::Round, Cut::Corner(0.2)] {
+            let form = Form::new(&Cage::new(4, cut), &prism());
+            let fine = Cage::refined(4, cut, 4);
+            let mut farthest = 0.0f64;
+            for (weights, tangents) in fine.vertices.iter().zip(&fine.tangents) {
+                let point = Cage::blend(weights, &prism());
+                let is_level = slope(tangents, &prism()).is_some_and(|[x, y]| x.hypot(y) < 1.5);
+                if is_level && point.z > 60.0 {
+                    let found = form.height(point.truncate().as_vec2()).unwrap();
+                    farthest = farthest.max((f64::from(found) - point.z).abs());
+                }
+            }
+            assert!(farthest < 0.5, "{cut:?}: {farthest} mm off");
+        }
+    }
+}
