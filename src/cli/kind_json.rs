@@ -134,6 +134,7 @@ impl From<Type> for TypeJson {
             Type::File => plain("file"),
             Type::Names => plain("names"),
             Type::Channels => plain("channels"),
+            Type::Materials => plain("materials"),
             Type::Choice(choices) => TypeJson {
                 choices: Some(choices),
                 ..plain("choice")

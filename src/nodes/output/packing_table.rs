@@ -36,7 +36,7 @@ pub static KIND: Kind = Kind {
     ],
     outputs: &[Output::new("table", Type::Maps, "The file.")],
     example: "(nodes: {
-        \"court\": region(polygons: [(outline: [(0, 0), (2000, 0), (2000, 1500), (0, 1500)])]),
+        \"court\": region(outlines: [(outline: [(0, 0), (2000, 0), (2000, 1500), (0, 1500)])]),
         \"stones\": square_packing(region: \"court\", stone: 100),
     }, outputs: { \"example\": packing_table(of: \"stones\", region: \"court\") })",
     build,
