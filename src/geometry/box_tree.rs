@@ -123,29 +123,56 @@ impl BoxTree {
         point: DVec2,
         distance_squared: impl Fn(u32) -> f64,
     ) -> Option<u32> {
-        self.nearest_within(point, f64::INFINITY, distance_squared)
+        let mut best = (f64::INFINITY, u32::MAX);
+        self.search(point, |limit, item| {
+            if let Some(item) = item {
+                let distance = distance_squared(item);
+                if distance < best.0 || (distance == best.0 && item < best.1) {
+                    best = (distance, item);
+                }
+            }
+            limit <= best.0
+        });
+        (best.1 != u32::MAX).then_some(best.1)
     }
 
-    /// As [`BoxTree::nearest`], of the items whose distance has a square of at most `limit`.
-    pub(crate) fn nearest_within(
+    /// As [`BoxTree::nearest`], and the square of the distance of the next.
+    pub(crate) fn nearest_two(
         &self,
         point: DVec2,
-        limit: f64,
         distance_squared: impl Fn(u32) -> f64,
-    ) -> Option<u32> {
-        let mut best = (limit, u32::MAX);
-        let mut waiting = Waiting::new((0, self.nodes.first()?.distance_squared(point)));
+    ) -> Option<(u32, f64)> {
+        let (mut best, mut next) = ((f64::INFINITY, u32::MAX), f64::INFINITY);
+        self.search(point, |limit, item| {
+            if let Some(item) = item {
+                let distance = distance_squared(item);
+                if distance < best.0 || (distance == best.0 && item < best.1) {
+                    next = best.0;
+                    best = (distance, item);
+                } else if distance < next {
+                    next = distance;
+                }
+            }
+            limit <= next
+        });
+        (best.1 != u32::MAX).then_some((best.1, next))
+    }
+
+    /// Shows items, near ones first on the whole: `show` is asked with the square of a distance, and none or one item,
+    /// whether it wants what is so far away.
+    fn search(&self, point: DVec2, mut show: impl FnMut(f64, Option<u32>) -> bool) {
+        let Some(root) = self.nodes.first() else {
+            return;
+        };
+        let mut waiting = Waiting::new((0, root.distance_squared(point)));
         while let Some((index, distance)) = waiting.pop() {
-            if distance > best.0 {
+            if !show(distance, None) {
                 continue;
             }
             let node = &self.nodes[index];
             let Some(second) = node.second else {
                 for item in &self.items[node.items[0]..node.items[1]] {
-                    let distance = distance_squared(*item);
-                    if distance < best.0 || (distance == best.0 && *item < best.1) {
-                        best = (distance, *item);
-                    }
+                    show(distance, Some(*item));
                 }
                 continue;
             };
@@ -157,12 +184,11 @@ impl BoxTree {
             }
             both.into_iter().for_each(|child| waiting.push(child));
         }
-        (best.1 != u32::MAX).then_some(best.1)
     }
 }
 
 /// Levels of a tree, at most: each halves its items.
-const DEEPEST: usize = 64;
+const DEEPEST: usize = 40;
 
 /// Nodes that wait to be looked at: of each level one at most, and two of the last.
 struct Waiting<T> {

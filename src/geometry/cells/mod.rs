@@ -10,7 +10,6 @@ use self::tree::EdgeTree;
 use super::box_tree::BoxTree;
 use crate::value::Partition;
 use glam::DVec2;
-use std::collections::HashMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -25,7 +24,7 @@ pub(crate) struct CellIndex {
     grid: Grid,
     tree: BoxTree,
     /// Cells with many edges.
-    large: HashMap<u32, EdgeTree>,
+    large: Vec<(u32, EdgeTree)>,
 }
 
 /// A cell with more edges has them in a tree.
@@ -54,6 +53,8 @@ pub(crate) struct Spot {
     pub(crate) edge: u32,
     /// How far the cell is moved from where the partition has it.
     shift: DVec2,
+    /// Outside of all cells: a point, and how far around it this cell is the nearest.
+    sure: Option<(DVec2, f64)>,
 }
 
 impl CellIndex {
@@ -82,6 +83,15 @@ impl CellIndex {
             if again.border >= 0.0 {
                 return again;
             }
+            // The others are nearer by no more than the way to the point, and it is farther by no more.
+            let is_near =
+                |(from, radius): (DVec2, f64)| point.distance_squared(from) < radius * radius;
+            if last.sure.is_some_and(is_near) {
+                return Spot {
+                    sure: last.sure,
+                    ..again
+                };
+            }
             // Across the nearest edge is where the point is most often.
             let beyond = self.partition.neighbours[again.edge as usize];
             if beyond != Partition::NONE && self.partition.period.is_none() {
@@ -97,33 +107,39 @@ impl CellIndex {
             let spot = is_near.then(|| self.spot(copy.cell, copy.shift, point))?;
             (spot.border >= 0.0).then_some(spot)
         });
-        inside.unwrap_or_else(|| self.nearest(point, last))
+        inside.unwrap_or_else(|| self.nearest(point))
     }
 
     /// The cell that is nearest to a point outside all.
-    fn nearest(&self, point: DVec2, last: Option<&Spot>) -> Spot {
+    fn nearest(&self, point: DVec2) -> Spot {
         let spot = |index: u32| {
             let copy = &self.copies[index as usize];
             self.spot(copy.cell, copy.shift, point)
         };
-        let square = |spot: Spot| spot.border * spot.border;
-        // No cell is nearer than the nearest, so what is known of one spares looking at others; a little more, since it
-        // has been rounded.
-        let limit = last.map_or(f64::INFINITY, |last| {
-            square(self.spot(last.cell, last.shift, point)) * (1.0 + 1e-9)
-        });
-        let nearest = self
-            .tree
-            .nearest_within(point, limit, |index| square(spot(index)));
+        let square = |index: u32| {
+            let border = spot(index).border;
+            border * border
+        };
         // Nothing is nearest to what is no point.
-        spot(nearest.unwrap_or(0))
+        let (nearest, next) = self.tree.nearest_two(point, square).unwrap_or((0, 0.0));
+        let nearest = spot(nearest);
+        Spot {
+            sure: Some((point, 0.499 * (next.sqrt() + nearest.border))),
+            ..nearest
+        }
+    }
+
+    /// The edges of a cell that has many.
+    fn tree_of(&self, cell: u32) -> &EdgeTree {
+        let place = self.large.binary_search_by_key(&cell, |(cell, _)| *cell);
+        &self.large[place.expect("such cells have trees")].1
     }
 
     /// A cell as seen from a point.
     fn spot(&self, cell: u32, shift: DVec2, point: DVec2) -> Spot {
         let at = point - shift;
         let (is_inside, nearest, edge) = match has_many(&self.partition, cell) {
-            true => self.large[&cell].meet(at),
+            true => self.tree_of(cell).meet(at),
             false => meet(&self.partition, cell, at),
         };
         let distance = nearest.sqrt();
@@ -133,6 +149,7 @@ impl CellIndex {
             border: if is_inside { distance } else { -distance },
             edge,
             shift,
+            sure: None,
         }
     }
 }
@@ -177,7 +194,7 @@ fn has_many(partition: &Partition, cell: u32) -> bool {
 }
 
 /// The edges of cells that have many, by the cells.
-fn large(partition: &Partition) -> HashMap<u32, EdgeTree> {
+fn large(partition: &Partition) -> Vec<(u32, EdgeTree)> {
     let cells = (0..partition.len() as u32).filter(|cell| has_many(partition, *cell));
     let tree = |cell: u32| {
         let mut edges = vec![];

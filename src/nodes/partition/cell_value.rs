@@ -33,12 +33,11 @@ pub static KIND: Kind = Kind {
         of_cell("vector", Type::Vector(Unit::One), "The vector."),
     ],
     example: r##"(nodes: {
-        "tone": cell_value(name: "random", value: 0.5),
-        "shade": mix(a: "#c8a06e", b: "#8a6a42", amount: "tone"),
+        "example": cell_value(name: "random", value: 0.5),
+        "shade": mix(a: "#c8a06e", b: "#8a6a42", amount: "example"),
         "wood": material(base_color: "shade"),
         "blocks": voronoi_split(size: (100, 100), cell_size: 20),
         "laid": per_cell(cells: "blocks", of: "wood"),
-        "example": cell_value(name: "random"),
     }, outputs: { "floor": maps(of: "laid", pixels_per_mm: 1, channels: [base_color]) })"##,
     build,
 };
