@@ -5,7 +5,7 @@
 //! a quarter of a circle.
 //!
 //! At each point the stones near it are asked for their height, and the highest counts: stones are never drawn into a
-//! picture. Rims are supersampled, and so are borders of colours.
+//! picture. A pixel at a rim has the share of each stone in it: of setts by the distance to the outline, of others by four points.
 
 mod cage;
 mod depth;
@@ -16,11 +16,12 @@ mod kernels;
 mod laying;
 mod optics;
 mod outline;
+mod top;
 
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Domain, Type, Unit, Value};
-use kernels::{Find, OfStone, Relief, Show, Shown};
+use kernels::{Find, OfStone, Relief, Shown};
 use laying::{Laid, lay};
 use optics::OPTICS;
 
@@ -94,6 +95,12 @@ pub static KIND: Kind = Kind {
             "How far the stone's top leans.",
         )
         .on(Domain::Plane),
+        Output::field(
+            "recess",
+            Type::Number(Unit::One),
+            "How hidden the point is: 0 on stones, 1 in the middle of joints, soft between.",
+        )
+        .on(Domain::Plane),
     ],
     example: r##"(nodes: {
         "cells": voronoi_split(size: (1000, 1000), cell_size: 80),
@@ -140,34 +147,38 @@ const INPUTS: &[Input] = &[
         .range(0.0, 1.0),
     Input::number("bed", Unit::Millimetre, "Height of what fills the joints above the base.").per_point().of(Domain::Plane).default("0"),
     Input::number("chips", Unit::Millimetre, "How far from its edge the stone is chipped.").per_point().of(Domain::Plane).default("0"),
+    Input::number("relief", Unit::Millimetre, "What is added to the height of stones, in their mask: their rough faces.")
+        .per_point()
+        .of(Domain::Plane)
+        .default("0"),
+    Input::number("variety", Unit::One, "How far the brightness differs from stone to stone, on top of the table; it follows `random`.")
+        .default("0")
+        .range(0.0, 1.0),
     Input::new("optics", Type::List(&Type::Record(OPTICS)), "What stones look like: each gets one of these by chance.")
         .default("[(colour: \"#868b86\")]"),
     Input::new("seed", Type::Whole, "Another number gives other stones; so does the recipe's seed.").default("0"),
 ];
 
-/// Bend within a pixel that does not show, as a share of the stones' height.
-const EVEN: f64 = 0.01;
-
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let table = optics::read(inputs)?;
     let laid = lay(inputs, build, &table)?;
-    let [colours, optics, chances, numbers] = columns(&laid, &table);
+    let [colours, optics, chances, numbers] = columns(&laid, &table, inputs.number("variety"));
     let find = Find {
         key: laid.ground.key(),
         ground: laid.ground,
+        widest: laid.widest as f32,
     };
     let found = build.kernel(find, vec![Field::position(Domain::Plane)]);
-    let [bed, chips] = ["bed", "chips"].map(|name| inputs.field(name));
-    let shown = build.kernel(Show, vec![found.clone(), bed, chips]);
-    let even = (EVEN * inputs.number("height")) as f32;
-    let relief = build.kernel(Relief { even }, vec![shown.clone()]);
+    let [bed, chips, face] = ["bed", "chips", "relief"].map(|name| inputs.field(name));
+    let joint = inputs.number("joint") as f32;
+    let relief = build.kernel(Relief { joint }, vec![found.part(0, 4), bed, chips, face]);
     let of_stone = |columns: Vec<Vec<f32>>, is_mean| {
-        build.kernel(OfStone::new(columns, is_mean), vec![found.part(3, 1)])
+        build.kernel(OfStone::new(columns, is_mean), vec![found.part(4, 3)])
     };
     let [colours, optics, chances] =
         [colours, optics, chances].map(|columns| of_stone(columns, true));
     let numbers = of_stone(numbers, false);
-    let id = build.kernel(Shown, vec![shown.part(1, 1), numbers.part(1, 1)]);
+    let id = build.kernel(Shown, vec![relief.part(1, 1), numbers.part(1, 1)]);
     let fields = [
         relief.part(0, 1),
         relief.part(1, 1),
@@ -180,13 +191,14 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         chances.part(0, 1),
         relief.part(2, 1),
         chances.part(1, 1),
+        relief.part(3, 1),
     ];
     Ok(fields.map(Value::Field).to_vec())
 }
 
 /// What belongs to each stone: colours, optics and chances, which are averaged over pixels, and numbers, which are not.
 /// Behind the stones stands what counts where there is none.
-fn columns(laid: &Laid, table: &[optics::Optics]) -> [Vec<Vec<f32>>; 4] {
+fn columns(laid: &Laid, table: &[optics::Optics], variety: f64) -> [Vec<Vec<f32>>; 4] {
     let column = |value: &dyn Fn(usize) -> f64, none: f64| -> Vec<f32> {
         let stones = (0..laid.records.len()).map(value);
         stones.chain([none]).map(|value| value as f32).collect()
@@ -197,7 +209,13 @@ fn columns(laid: &Laid, table: &[optics::Optics]) -> [Vec<Vec<f32>>; 4] {
             value(&table[0]),
         )
     };
-    let colours = [0, 1, 2].map(|part| of_record(&|record| record.colour[part]));
+    let colours = [0, 1, 2].map(|part| {
+        let of_stone = |stone: usize| {
+            let brightness = 1.0 + variety * (2.0 * laid.shares[stone] - 1.0);
+            table[laid.records[stone]].colour[part] * brightness
+        };
+        column(&of_stone, table[0].colour[part])
+    });
     let optics = vec![
         of_record(&|record| record.roughness),
         of_record(&|record| record.specular),

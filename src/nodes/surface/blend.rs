@@ -16,7 +16,7 @@
 
 pub(super) mod channels;
 
-use super::mix::Mix;
+use super::mix::{Mix, Within};
 use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output, common_domain};
@@ -88,7 +88,10 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let blended = |(name, [a, b]): (String, [Field; 2])| {
         let is_direction = Material::is_direction(&name, &a);
         let width = a.width();
-        let is_together = [&a, &b].iter().any(|field| field.as_constant().is_none());
+        let within = match [&a, &b].iter().all(|field| field.as_constant().is_some()) {
+            true => Within::Straight,
+            false => Within::Even,
+        };
         let fields = vec![a, b, share.clone()];
         let field = match is_direction {
             true => build.kernel(channels::Axes, fields),
@@ -96,7 +99,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
                 Mix {
                     mode: "normal",
                     width,
-                    is_together,
+                    within,
                 },
                 fields,
             ),

@@ -5,7 +5,7 @@
 //! The inputs arrive averaged over the pixel, and what is mixed are the averages: exact where only the
 //! colours or only the amount change within a pixel. Amounts beyond 0 to 1 are clamped. Where the amount
 //! bends within a pixel, as at the rim of a knot, the mix is supersampled; so are all pixels that vary where the
-//! mode is not linear.
+//! mode is not linear. With `pixels: means` no pixel is divided because of the amount.
 
 use crate::field::{Block, Kernel, Sampling};
 use crate::key::KeyHasher;
@@ -31,6 +31,13 @@ pub static KIND: Kind = Kind {
             "What `b` does to `a`, part by part and in linear light.",
         )
         .default("normal"),
+        Input::new(
+            "pixels",
+            Type::Choice(&["divided", "means"]),
+            "divided: pixels in which the amount bends are looked at more closely; means: what is mixed are always means, \
+             which is quick, and right for masks that are filtered and for colours that do not follow the amount.",
+        )
+        .default("divided"),
     ],
     outputs: &[Output::field("colour", Type::Colour, "The mixed colour.")],
     example: r##"(nodes: {
@@ -42,12 +49,16 @@ pub static KIND: Kind = Kind {
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let mode = inputs.choice("mode");
+    let within = match inputs.choice("pixels") {
+        "means" => Within::Means,
+        _ => Within::Straight,
+    };
     let inputs = ["a", "b", "amount"].map(|name| inputs.field(name));
     Ok(vec![Value::Field(build.kernel(
         Mix {
             mode,
             width: 3,
-            is_together: false,
+            within,
         },
         inputs.into(),
     ))])
@@ -75,9 +86,19 @@ pub(super) struct Mix {
     pub(super) mode: &'static str,
     /// Columns of the values that are mixed.
     pub(super) width: usize,
-    /// Whether the values change where the amount does, as they do when materials are blended: then the mean of
-    /// the mix is not the mix of the means.
-    pub(super) is_together: bool,
+    /// What is known of a pixel.
+    pub(super) within: Within,
+}
+
+/// When the mean of a mix is taken for the mix of the means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Within {
+    /// Where the amount is straight.
+    Straight,
+    /// Where the amount is even: the values change where it does, as they do when materials are blended.
+    Even,
+    /// Everywhere.
+    Means,
 }
 
 impl Kernel for Mix {
@@ -85,7 +106,7 @@ impl Kernel for Mix {
         key.text("mix")
             .whole(i64::from(KIND.version))
             .text(self.mode)
-            .whole(i64::from(self.is_together));
+            .whole(self.within as i64);
     }
 
     fn width(&self) -> usize {
@@ -96,16 +117,18 @@ impl Kernel for Mix {
         if !["normal", "add"].contains(&self.mode) {
             return Sampling::Supersampled;
         }
-        if self.is_together {
-            return Sampling::FilteredWhereEven {
-                column: 2 * self.width,
+        let column = 2 * self.width;
+        match self.within {
+            Within::Straight => Sampling::FilteredWhereStraight {
+                column,
+                absolute: 0.08,
+                relative: 0.0,
+            },
+            Within::Even => Sampling::FilteredWhereEven {
+                column,
                 absolute: 0.05,
-            };
-        }
-        Sampling::FilteredWhereStraight {
-            column: 2 * self.width,
-            absolute: 0.08,
-            relative: 0.0,
+            },
+            Within::Means => Sampling::Filtered,
         }
     }
 

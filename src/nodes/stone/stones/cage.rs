@@ -83,6 +83,11 @@ impl Cage {
         }
     }
 
+    /// About the highest point over the corners of a prism: the middle of the top, which is the vertex behind the corners.
+    pub(super) fn highest(&self, corners: &[glam::DVec3]) -> f64 {
+        Cage::blend(&self.vertices[corners.len()], corners).z
+    }
+
     /// The blend of the corners' values.
     pub(super) fn blend<T: Blend>(weights: &[f64], corners: &[T]) -> T {
         let terms = weights.iter().zip(corners).filter(|term| *term.0 != 0.0);

@@ -20,7 +20,7 @@ pub(super) struct Grid {
 }
 
 /// Bins for each stone.
-const BINS: f64 = 3.0;
+const BINS: f64 = 8.0;
 
 impl Grid {
     /// The bins of stones that are known up to `reach` around them.

@@ -1,9 +1,10 @@
-//! All stones of a partition, and which of them is on top at a point.
+//! All stones of a partition, and which of them are on top in a pixel.
 
 use super::cage::Cage;
 use super::depth::{Outline, Outlines};
 use super::form::Form;
 use super::grid::Grid;
+use super::top::{Found, Part, Pixel, Top};
 use crate::key::{Key, KeyHasher};
 use glam::{DVec2, DVec3, Vec2};
 use std::collections::BTreeMap;
@@ -28,21 +29,11 @@ pub(super) struct Stone {
     /// How far the middle of a sett's top stands above its rim, and over what distance it falls by that.
     pub(super) crown: f32,
     pub(super) half: f32,
+    /// How far what is seen of it may end from its outline, and the height above which it does not end.
+    pub(super) moved: f32,
+    pub(super) flat: f32,
     /// Height at which wear has flattened it, and how far below it begins to.
     pub(super) worn: Option<[f32; 2]>,
-}
-
-/// What is on top at a point.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    /// Height of the stone in mm; 0 where there is none.
-    pub(super) height: f32,
-    /// Whether there is a stone.
-    pub(super) is_covered: bool,
-    /// How far inside the outline of the stone the point is; below 0 outside.
-    pub(super) depth: f32,
-    /// The number of the stone, or of the nearest.
-    pub(super) stone: Option<u32>,
 }
 
 /// All stones.
@@ -60,6 +51,9 @@ pub(super) struct Ground {
 
 /// Most forms that are kept: some ten megabytes.
 pub(super) const FORMS: usize = 2048;
+
+/// Where the rule of Gauss with two points looks, from the middle, as a share of the whole: 1 / (2 sqrt 3).
+const GAUSS: f32 = 0.288_675_13;
 
 /// Forms at hand, so that neighbouring points need not ask for them.
 #[derive(Default)]
@@ -80,6 +74,8 @@ impl Ground {
                 stone.rim,
                 stone.crown,
                 stone.half,
+                stone.moved,
+                stone.flat,
             ];
             let numbers = numbers.into_iter().chain(worn).map(f64::from);
             let all = stone
@@ -100,47 +96,46 @@ impl Ground {
         key.finish()
     }
 
-    /// What is on top at a point.
+    /// What is on top in a pixel.
     #[inline]
-    pub(super) fn find(&self, at: DVec2, hand: &mut Hand) -> Found {
-        let mut found = Found {
-            height: 0.0,
-            is_covered: false,
-            depth: -self.grid.reach,
-            stone: None,
-        };
+    pub(super) fn find(&self, at: DVec2, pixel: &Pixel, hand: &mut Hand) -> Found {
+        let mut top = Top::default();
+        let (mut nearest, mut depth) = (None, -self.grid.reach);
         for near in self.grid.near(at) {
             let stone = &self.stones[*near as usize];
             let point = self.grid.apart(at, stone.centre).as_vec2();
             let outside = (stone.low - point).max(point - stone.high).max_element();
-            if outside < -found.depth.min(0.0) {
-                self.look_at(*near, point, hand, &mut found);
+            if outside >= (0.5 * pixel.width).max(-depth) {
+                continue;
+            }
+            let inside = self.outlines.depth(&stone.outline, point);
+            if inside > depth {
+                (nearest, depth) = (Some(*near), inside);
+            }
+            let part = match stone.corners.is_empty() {
+                true => stone.sett(inside, point, pixel.width),
+                false => self.cut(*near, inside, point, pixel, hand),
+            };
+            if part.cover > 0.0 {
+                top.add(*near, inside, part);
             }
         }
-        found
+        top.found(nearest, depth)
     }
 
+    /// What is seen of a prism, or of what is cut of it: at one point, or where it may end at four.
     #[inline]
-    fn look_at(&self, number: u32, point: Vec2, hand: &mut Hand, found: &mut Found) {
+    fn cut(&self, number: u32, depth: f32, point: Vec2, pixel: &Pixel, hand: &mut Hand) -> Part {
         let stone = &self.stones[number as usize];
-        let depth = self.outlines.depth(&stone.outline, point);
-        let height = match stone.corners.is_empty() {
-            true => stone.sett(depth, point),
-            false => self.form(number, hand).height(point),
-        };
-        let height = height.map(|height| stone.settled(height, point));
-        let is_better = match height {
-            Some(height) => !found.is_covered || height > found.height,
-            None => !found.is_covered && depth > found.depth,
-        };
-        if is_better {
-            *found = Found {
-                height: height.unwrap_or_default(),
-                is_covered: height.is_some(),
-                depth: depth.max(-self.grid.reach),
-                stone: Some(number),
-            };
+        let form = self.form(number, hand);
+        let at = |point: Vec2| Some(stone.settled(form.height(point)?, point));
+        let middle = form.height(point);
+        let is_whole = depth > stone.moved + 0.7 * pixel.width
+            && middle.is_some_and(|height| height > stone.flat);
+        if pixel.width == 0.0 || is_whole {
+            return Part::of([middle.map(|height| stone.settled(height, point))]);
         }
+        Part::of(pixel.points.map(|offset| at(point + offset)))
     }
 
     /// The form of a stone, from the hand, from those that are kept, or made anew.
@@ -177,15 +172,35 @@ impl Ground {
 }
 
 impl Stone {
-    /// The height of a sett: flat or a little domed on top, with a round rim.
+    /// What is seen of a sett: flat or a little domed on top, with a round rim.
     #[inline]
-    fn sett(&self, depth: f32, point: Vec2) -> Option<f32> {
-        if depth <= 0.0 {
-            return None;
+    fn sett(&self, depth: f32, point: Vec2, width: f32) -> Part {
+        let cover = match width > 0.0 {
+            true => (depth / width + 0.5).clamp(0.0, 1.0),
+            false => f32::from(u8::from(depth > 0.0)),
+        };
+        let domed = self.top + self.crown * (1.0 - point.length_squared() * self.half);
+        let top = self.settled(domed, point);
+        let (from, to) = ((depth - 0.5 * width).max(0.0), depth + 0.5 * width);
+        if from >= self.rim || cover <= 0.0 {
+            return Part {
+                height: top,
+                range: 0.0,
+                cover,
+            };
         }
-        let left = (self.rim - depth).max(0.0);
-        let rim = self.rim - (self.rim * self.rim - left * left).max(0.0).sqrt();
-        Some(self.top - rim + self.crown * (1.0 - point.length_squared() * self.half))
+        let below = |depth: f32| {
+            let left = (self.rim - depth).max(0.0);
+            self.rim - (self.rim * self.rim - left * left).max(0.0).sqrt()
+        };
+        // The rule of Gauss with two points.
+        let (middle, apart) = (0.5 * (from + to), GAUSS * (to - from));
+        let lost = 0.5 * (below(middle - apart) + below(middle + apart));
+        Part {
+            height: top - lost,
+            range: below(from) - below(to),
+            cover,
+        }
     }
 
     /// The height as the stone lies in the ground, flattened where it is worn.

@@ -1,28 +1,44 @@
 //! The kernels of stones: what is at a point, what shows of it, and what belongs to the stone there.
 
 use super::KIND;
-use super::ground::{Found, Ground, Hand};
+use super::ground::{Ground, Hand};
+use super::top::Pixel;
 use crate::field::{Block, Kernel, Sampling};
 use crate::key::{Key, KeyHasher};
-use glam::DVec2;
+use glam::{DVec2, Vec2};
 
-/// Columns in: position. Columns out: height of the stone, whether there is one, depth inside the outline, number of the
-/// stone or of the nearest, -1 for none. Unfiltered: what reads them is supersampled.
+/// Columns in: position. Columns out: mean height of the stones in the pixel, by how much it differs within, the share that
+/// they cover, depth inside the outline, number of the stone or of the nearest, -1 for none, number of another stone in the
+/// pixel, and its share of what is covered.
 #[derive(Debug)]
 pub(super) struct Find {
     pub(super) ground: Ground,
     pub(super) key: Key,
+    /// Pixels that are wider than this in mm hold too many stones to look at each.
+    pub(super) widest: f32,
 }
 
 impl Kernel for Find {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("stones at a point")
             .whole(i64::from(KIND.version))
-            .key(self.key);
+            .key(self.key)
+            .number(f64::from(self.widest));
     }
 
     fn width(&self) -> usize {
-        4
+        7
+    }
+
+    fn reads_spread(&self, column: usize) -> bool {
+        column < 2
+    }
+
+    fn sampling(&self) -> Sampling {
+        Sampling::FilteredWhereEven {
+            column: 0,
+            absolute: self.widest,
+        }
     }
 
     fn nanoseconds(&self) -> f32 {
@@ -30,19 +46,23 @@ impl Kernel for Find {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let [x, y] = [0, 1].map(|axis| block.inputs[axis].values);
+        let [x, y] = [0, 1].map(|axis| block.inputs[axis]);
         let mut hand = Hand::default();
-        for (index, (x, y)) in x.iter().zip(y).enumerate() {
-            let at = DVec2::new(f64::from(*x), f64::from(*y));
-            let Found {
-                height,
-                is_covered,
-                depth,
-                stone,
-            } = self.ground.find(at, &mut hand);
-            let number = stone.map_or(-1.0, |stone| stone as f32);
-            let found = [height, f32::from(u8::from(is_covered)), depth, number];
-            for (output, value) in block.outputs.iter_mut().zip(found) {
+        for index in 0..x.values.len() {
+            let at = DVec2::new(f64::from(x.values[index]), f64::from(y.values[index]));
+            let sides = [0, 1].map(|side| Vec2::new(x.spread[side][index], y.spread[side][index]));
+            let found = self.ground.find(at, &Pixel::new(sides), &mut hand);
+            let number = |stone: Option<u32>| stone.map_or(-1.0, |stone| stone as f32);
+            let columns = [
+                found.height,
+                found.range,
+                found.cover,
+                found.depth,
+                number(found.stone),
+                number(found.other),
+                found.share,
+            ];
+            for (output, value) in block.outputs.iter_mut().zip(columns) {
                 output[index] = value;
             }
         }
@@ -52,18 +72,22 @@ impl Kernel for Find {
 /// How much the height falls over a mm towards the edge where the stone is chipped.
 const CHIP: f32 = 1.5;
 
-/// What shows of stones above their bed. Columns in: those of [`Find`], height of the bed, width of the chips. Columns out:
-/// height, mask, depth, and a column that bends where a pixel has to be divided.
+/// How far on stones, in mm, a point is still in the shade of joints.
+const SHADED: f32 = 5.0;
+
+/// What shows of stones above their bed. Columns in: the first four of [`Find`]; height of the bed, width of the chips,
+/// relief. Columns out: height, mask, depth, recess.
 #[derive(Debug)]
-pub(super) struct Show;
+pub(super) struct Relief {
+    /// Width of the joints in mm.
+    pub(super) joint: f32,
+}
 
-/// Added where a stone shows, so that its rim bends by more than anything.
-const STEP: f32 = 1000.0;
-
-impl Kernel for Show {
+impl Kernel for Relief {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("stones above their bed")
-            .whole(i64::from(KIND.version));
+        key.text("relief of stones")
+            .whole(i64::from(KIND.version))
+            .number(f64::from(self.joint));
     }
 
     fn width(&self) -> usize {
@@ -71,15 +95,20 @@ impl Kernel for Show {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let [stone, covered, depth, _, bed, chips] =
-            [0, 1, 2, 3, 4, 5].map(|column| block.inputs[column].values);
-        for index in 0..stone.len() {
-            let chipped = stone[index] - CHIP * (chips[index] - depth[index].max(0.0)).max(0.0);
-            let shows = covered[index] > 0.5 && chipped > bed[index];
-            let shown = match shows {
-                true => [chipped, 1.0, depth[index], STEP + stone[index]],
-                false => [bed[index], 0.0, depth[index], 0.0],
-            };
+        let [height, range, cover, depth, bed, chips, relief] =
+            [0, 1, 2, 3, 4, 5, 6].map(|column| block.inputs[column].values);
+        for index in 0..height.len() {
+            let lost = CHIP * (chips[index] - depth[index].max(0.0)).max(0.0);
+            let above = height[index] + relief[index] - lost - bed[index];
+            let [share, rise] = positive(above, range[index]);
+            let hidden = (SHADED - depth[index]) / (SHADED + 0.5 * self.joint);
+            let hidden = hidden.clamp(0.0, 1.0);
+            let shown = [
+                bed[index] + cover[index] * rise,
+                cover[index] * share,
+                depth[index],
+                hidden * hidden * (3.0 - 2.0 * hidden),
+            ];
             for (output, value) in block.outputs.iter_mut().zip(shown) {
                 output[index] = value;
             }
@@ -87,46 +116,26 @@ impl Kernel for Show {
     }
 }
 
-/// The first three columns of [`Show`], averaged over pixels where they bend.
-#[derive(Debug)]
-pub(super) struct Relief {
-    /// Bend in mm that does not show.
-    pub(super) even: f32,
-}
-
-impl Kernel for Relief {
-    fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("relief of stones")
-            .whole(i64::from(KIND.version))
-            .number(f64::from(self.even));
-    }
-
-    fn width(&self) -> usize {
-        3
-    }
-
-    fn sampling(&self) -> Sampling {
-        Sampling::FilteredWhereStraight {
-            column: 3,
-            absolute: self.even,
-            relative: 0.1,
-        }
-    }
-
-    fn evaluate(&self, block: &mut Block<'_>) {
-        for (output, input) in block.outputs.iter_mut().zip(block.inputs) {
-            output.copy_from_slice(input.values);
-        }
+/// Of numbers evenly spread over `range` around `middle`: the share that is above 0, and the mean with those below as 0.
+#[inline]
+fn positive(middle: f32, range: f32) -> [f32; 2] {
+    let reach = middle + 0.5 * range;
+    if reach <= 0.0 {
+        [0.0, 0.0]
+    } else if reach >= range {
+        [1.0, middle]
+    } else {
+        [reach / range, 0.5 * reach * reach / range]
     }
 }
 
-/// What belongs to a stone, by its number. Columns in: number.
+/// What belongs to a stone, by its number. Columns in: the last three of [`Find`].
 #[derive(Debug)]
 pub(super) struct OfStone {
     /// For each column the value of every stone, and behind them that of no stone.
     pub(super) columns: Vec<Vec<f32>>,
     pub(super) key: Key,
-    /// Whether pixels at borders are means, as opposed to what is in their middle.
+    /// Whether pixels with two stones are means, as opposed to what most of it is.
     pub(super) is_mean: bool,
 }
 
@@ -159,32 +168,22 @@ impl Kernel for OfStone {
         self.columns.len()
     }
 
-    fn sampling(&self) -> Sampling {
-        match self.is_mean {
-            true => Sampling::FilteredWhereEven {
-                column: 0,
-                absolute: 0.0,
-            },
-            false => Sampling::Filtered,
-        }
-    }
-
     fn evaluate(&self, block: &mut Block<'_>) {
-        let numbers = block.inputs[0].values;
+        let [numbers, others, shares] = [0, 1, 2].map(|column| block.inputs[column].values);
         for (output, column) in block.outputs.iter_mut().zip(&self.columns) {
             let none = column.len() - 1;
-            for (value, number) in output.iter_mut().zip(numbers) {
-                *value = column[if *number < 0.0 {
-                    none
-                } else {
-                    *number as usize
-                }];
+            let of = |number: f32| column[if number < 0.0 { none } else { number as usize }];
+            for (index, value) in output.iter_mut().enumerate() {
+                *value = of(numbers[index]);
+                if self.is_mean && shares[index] > 0.0 {
+                    *value += (of(others[index]) - *value) * shares[index];
+                }
             }
         }
     }
 }
 
-/// The id of the stone that shows, 0 where none does. Columns in: mask of [`Show`], id.
+/// The id of the stone that shows, 0 where the bed is most of the pixel. Columns in: mask of [`Relief`], id.
 #[derive(Debug)]
 pub(super) struct Shown;
 
@@ -201,7 +200,27 @@ impl Kernel for Shown {
     fn evaluate(&self, block: &mut Block<'_>) {
         let pairs = block.inputs[0].values.iter().zip(block.inputs[1].values);
         for (output, (mask, id)) in block.outputs[0].iter_mut().zip(pairs) {
-            *output = mask * id;
+            *output = if *mask > 0.5 { *id } else { 0.0 };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_above_is_the_mean_of_many() {
+        for (middle, range) in [(3.0, 2.0), (0.3, 2.0), (-0.7, 2.0), (-3.0, 2.0), (1.0, 0.0)] {
+            let values = (0..1000).map(|i| middle + range * ((i as f32 + 0.5) / 1000.0 - 0.5));
+            let [share, mean] = positive(middle, range);
+            let above: Vec<f32> = values.map(|value| value.max(0.0)).collect();
+            let found = above.iter().filter(|value| **value > 0.0).count() as f32 / 1000.0;
+            assert!(
+                (found - share).abs() < 2e-3,
+                "{middle} {range}: {share}, not {found}"
+            );
+            assert!((above.iter().sum::<f32>() / 1000.0 - mean).abs() < 2e-3);
         }
     }
 }

@@ -20,6 +20,8 @@ pub(super) struct Laid {
     pub(super) records: Vec<usize>,
     /// The id of the cell.
     pub(super) ids: Vec<u32>,
+    /// Width in mm that pixels may have in which single stones are looked at.
+    pub(super) widest: f64,
     /// A random number from 0 to 1.
     pub(super) shares: Vec<f64>,
     /// How far the top leans, in degrees.
@@ -66,8 +68,14 @@ impl Manner {
     }
 }
 
+/// The share of its height above which a rounded stone goes on to all sides.
+const ROUNDED: f64 = 0.75;
+
 /// Stones between two questions whether to go on.
 const AT_ONCE: usize = 4096;
+
+/// Pixels may be so wide, as a share of a stone, for no more than two stones to matter.
+const WIDEST: f64 = 0.25;
 
 /// Lays the stones.
 ///
@@ -108,8 +116,10 @@ pub(super) fn lay(
         let failure = Failure::of_input("joint", "the joints leave nothing of any cell");
         return Err(failure.with_hint("make them narrower than half of a cell"));
     }
+    let area: f64 = partition.areas.iter().map(|area| area.abs()).sum();
     let ground = laying.finish(partition.period);
     Ok(Laid {
+        widest: WIDEST * (area / records.len() as f64).sqrt(),
         ground,
         records,
         ids,
@@ -218,6 +228,8 @@ impl Laying {
             rim: 0.0,
             crown: 0.0,
             half: 0.0,
+            moved: 0.0,
+            flat: f32::NEG_INFINITY,
             worn: None,
         };
         match self.manner.cut {
@@ -273,10 +285,14 @@ impl Laying {
             swell(cage, &mut corners, base, self.manner.swell);
         }
         if at.wear > 0.0 {
-            // The middle of the top is the vertex behind the corners.
-            let highest = Cage::blend(&cage.vertices[corners.len()], &corners).z;
+            let highest = cage.highest(&corners);
             let depth = 0.1 * top.abs() * at.wear;
             stone.worn = Some([(highest - depth) as f32, depth as f32]);
+        }
+        stone.moved = (1.5 * self.manner.deformation) as f32;
+        if cut != Cut::Prism {
+            // Rounded stones are widest at about half of their height.
+            stone.flat = (ROUNDED * cage.highest(&corners)) as f32;
         }
         let first = self.corners.len() as u32;
         self.corners.extend(corners.iter().copied());

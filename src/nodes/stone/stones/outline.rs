@@ -83,7 +83,7 @@ pub(super) fn is_convex(corners: &[DVec2]) -> bool {
 
 /// An outline whose edges are moved inwards, each by a length of its own; `None` if nothing is left.
 pub(super) fn inset(corners: &[DVec2], by: &mut dyn FnMut() -> f64) -> Option<Vec<DVec2>> {
-    let lengths: Vec<f64> = corners.iter().map(|_| by()).collect();
+    let lengths = along_arcs(corners, corners.iter().map(|_| by()).collect());
     let size = doubled_area(corners).abs().sqrt();
     let left = match is_convex(corners) {
         true => clipped(corners, &lengths),
@@ -92,6 +92,23 @@ pub(super) fn inset(corners: &[DVec2], by: &mut dyn FnMut() -> f64) -> Option<Ve
     let mut left: Vec<DVec2> = without_straight_corners(left);
     left.dedup_by(|one, other| one.distance(*other) < 1e-3 * size);
     (left.len() > 2 && doubled_area(&left) > 1e-3 * size * size).then_some(left)
+}
+
+/// Edges that turn by less than this, in radians, belong to one arc or are one side.
+const SMOOTH: f64 = 0.35;
+
+/// The same lengths, but one for all the edges of an arc.
+fn along_arcs(corners: &[DVec2], mut lengths: Vec<f64>) -> Vec<f64> {
+    let count = corners.len();
+    let along: Vec<DVec2> = edges(corners).map(|[from, to]| to - from).collect();
+    // Twice around, since the first edge may go on the last.
+    for index in 1..2 * count {
+        let (before, here) = ((index - 1) % count, index % count);
+        if along[before].angle_to(along[here]).abs() < SMOOTH {
+            lengths[here] = lengths[before];
+        }
+    }
+    lengths
 }
 
 /// A convex outline less the strips along its edges (Sutherland & Hodgman 1974).
@@ -112,26 +129,36 @@ fn clipped(corners: &[DVec2], lengths: &[f64]) -> Vec<DVec2> {
     left
 }
 
-/// An outline whose corners move to where the moved edges meet; `None` if an edge would turn round.
+/// An outline whose corners move to where the moved edges meet. Edges that would turn round are left out; `None` if that
+/// leaves nothing.
 fn mitred(corners: &[DVec2], lengths: &[f64]) -> Option<Vec<DVec2>> {
-    let count = corners.len();
-    let along: Vec<DVec2> = edges(corners)
-        .map(|[from, to]| (to - from).normalize_or_zero())
-        .collect();
-    let moved = |index: usize| {
-        let before = (index + count - 1) % count;
-        let (one, other) = (along[before], along[index]);
-        let turn = one.perp_dot(other);
-        let [a, b] = [lengths[before], lengths[index]];
-        match turn.abs() < 1e-3 {
-            true => corners[index] + other.perp() * b,
-            false => corners[index] + (other * a - one * b) / turn,
-        }
+    let line = |([from, to], length): ([DVec2; 2], &f64)| {
+        let along = (to - from).normalize_or_zero();
+        (from + along.perp() * *length, along)
     };
-    let moved: Vec<DVec2> = (0..count).map(moved).collect();
-    let runs_on = |([from, to], along): ([DVec2; 2], &DVec2)| (to - from).dot(*along) > 0.0;
-    let is_sound = edges(&moved).zip(&along).all(runs_on);
-    is_sound.then_some(moved)
+    let mut lines: Vec<(DVec2, DVec2)> = edges(corners).zip(lengths).map(line).collect();
+    while lines.len() > 2 {
+        let count = lines.len();
+        let meet = |index: usize| meeting(lines[(index + count - 1) % count], lines[index]);
+        let moved: Vec<DVec2> = (0..count).map(meet).collect();
+        let turned = edges(&moved)
+            .zip(&lines)
+            .position(|([from, to], (_, along))| (to - from).dot(*along) <= 0.0);
+        match turned {
+            Some(edge) => lines.remove(edge),
+            None => return Some(moved),
+        };
+    }
+    None
+}
+
+/// Where two lines meet, each a point and a direction; on the second if they are parallel.
+fn meeting((one, along): (DVec2, DVec2), (other, across): (DVec2, DVec2)) -> DVec2 {
+    let turn = along.perp_dot(across);
+    match turn.abs() < 1e-3 {
+        true => other,
+        false => one + along * ((other - one).perp_dot(across) / turn),
+    }
 }
 
 /// For each corner the radius to which it can be rounded, where edges are short less than the one that is wanted.
@@ -175,4 +202,50 @@ pub(super) fn rounded(corners: &[DVec2], radius: f64) -> Vec<DVec2> {
         rounded.push(to);
     }
     rounded
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arcs_keep_one_width_and_leave_a_stone() {
+        // A cell of a fan: its long sides are arcs, one bent inwards.
+        let arc = |radius: f64| {
+            (0..=8).map(move |step| {
+                let (sine, cosine) = libm::sincos(0.1 * f64::from(step));
+                DVec2::new(cosine, sine) * radius
+            })
+        };
+        let mut back: Vec<DVec2> = arc(100.0).collect();
+        back.reverse();
+        let corners: Vec<DVec2> = arc(180.0).chain(back).collect();
+        assert!(!is_convex(&corners));
+        let mut widths = (0..).map(|edge| 4.0 + f64::from(edge % 3));
+        let left = inset(&corners, &mut || widths.next().unwrap()).unwrap();
+        let radii = left.iter().map(|corner| corner.length());
+        let (low, high) = radii.fold((f64::MAX, 0.0f64), |(low, high), radius| {
+            (low.min(radius), high.max(radius))
+        });
+        assert!((103.5..107.0).contains(&low), "{low}");
+        assert!((173.0..176.5).contains(&high), "{high}");
+        assert!(doubled_area(&left) > 0.7 * doubled_area(&corners));
+    }
+
+    #[test]
+    fn edges_that_would_turn_round_are_left_out() {
+        let notched = [
+            (0.0, 0.0),
+            (100.0, 0.0),
+            (100.0, 100.0),
+            (51.0, 100.0),
+            (50.0, 99.0),
+            (49.0, 100.0),
+            (0.0, 100.0),
+        ];
+        let corners: Vec<DVec2> = notched.map(DVec2::from).to_vec();
+        let left = inset(&corners, &mut || 5.0).unwrap();
+        let area = 0.5 * doubled_area(&left);
+        assert!((7900.0..8150.0).contains(&area), "{area}");
+    }
 }
