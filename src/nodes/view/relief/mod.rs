@@ -4,9 +4,11 @@
 //! finely as the picture shows them; kernels hold what came of it, and its key is that of the field.
 
 mod light;
+mod lighting;
 mod raster;
 
 use self::light::LightMap;
+pub(super) use self::lighting::{Lighting, SmoothLight};
 use self::raster::Corners;
 use super::light::{Light, Sky, SkyLight};
 use super::scene::{Point, relief_surface};
