@@ -72,7 +72,8 @@ pub static KIND: Kind = Kind {
         Input::number(
             "relief",
             Unit::One,
-            "What the heights of a flat piece on the ground are multiplied by; left out, 1.",
+            "What the heights of a flat piece on the ground are multiplied by; left out, 1. They are sampled as finely as the \
+             picture shows them, in at most 8,388,608 cells.",
         )
         .optional()
         .range(0.0, 1000.0),

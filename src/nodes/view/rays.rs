@@ -5,6 +5,7 @@
 
 use super::camera::Camera;
 use super::light::{Disc, Light, Sky, Turn};
+use super::relief::Guide;
 use super::scene::{Point, Scene};
 use crate::field::{Block, InputColumn, Kernel};
 use crate::geometry::hierarchy::Ray;
@@ -49,6 +50,8 @@ pub(super) struct Stage {
     pub(super) lights: Vec<Light>,
     pub(super) disc: Disc,
     pub(super) sky: Sky,
+    /// For relief.
+    pub(super) guide: Option<Guide>,
 }
 
 impl Stage {
@@ -65,7 +68,11 @@ impl Stage {
     /// What is seen at a point of the picture: a thing, or the ground.
     fn look(&self, u: f64, v: f64) -> (Ray, Option<Point>) {
         let ray = self.camera.ray(u, v);
-        let seen = self.scene.look(&ray);
+        let relief = self.scene.relief.iter();
+        let near = relief
+            .zip(&self.guide)
+            .find_map(|(relief, guide)| guide.look((relief, &self.camera), &ray, [u, v]));
+        let seen = near.or_else(|| self.scene.look(&ray));
         (ray, seen.or_else(|| self.scene.ground_point(&ray)))
     }
 }

@@ -60,6 +60,14 @@ struct Surface {
     occlusion: f32,
 }
 
+/// The sides of a flat piece, of which its material knows only the upper edge.
+const SIDE: Surface = Surface {
+    colour: Vec3::new(0.15, 0.146, 0.14),
+    roughness: 0.9,
+    metalness: 0.0,
+    occlusion: 1.0,
+};
+
 impl Kernel for Shade {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("view shade").whole(i64::from(super::KIND.version));
@@ -126,11 +134,15 @@ impl Shade {
         let is_bark = self.has_bark && !is_cut_face(number as u32);
         let first = self.materials() + if is_bark { MATERIAL } else { 0 };
         let value = |part: usize| column(first + part);
-        let surface = Surface {
-            colour: Vec3::new(value(0), value(1), value(2)).clamp(Vec3::ZERO, Vec3::ONE),
-            roughness: value(4).clamp(0.045, 1.0),
-            metalness: value(5).clamp(0.0, 1.0),
-            occlusion: value(6).clamp(0.0, 1.0),
+        let is_side = self.stage.scene.relief.is_some() && is_cut_face(number as u32);
+        let surface = match is_side {
+            true => SIDE,
+            false => Surface {
+                colour: Vec3::new(value(0), value(1), value(2)).clamp(Vec3::ZERO, Vec3::ONE),
+                roughness: value(4).clamp(0.045, 1.0),
+                metalness: value(5).clamp(0.0, 1.0),
+                occlusion: value(6).clamp(0.0, 1.0),
+            },
         };
         let bent = if self.has_relief {
             bend(normal, inputs, index, first + 3)
