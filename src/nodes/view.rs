@@ -20,7 +20,7 @@ use self::camera::CAMERA;
 use self::light::{LIGHT, SKY, Turn};
 use self::picture::{Smooth, Tone};
 use self::rays::{Illumination, Sight, Stage, seen};
-use self::relief::Relief;
+use self::relief::{Lighting, Relief, SmoothLight};
 use self::scene::Point;
 use self::shade::Shade;
 use self::stage::stage;
@@ -72,7 +72,8 @@ pub static KIND: Kind = Kind {
         Input::number(
             "relief",
             Unit::One,
-            "What the heights of a flat piece on the ground are multiplied by; left out, 1.",
+            "What the heights of a flat piece on the ground are multiplied by; left out, 1. They are sampled as finely as the \
+             picture shows them, in at most 8,388,608 cells.",
         )
         .optional()
         .range(0.0, 1000.0),
@@ -161,8 +162,8 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let stage = Arc::new(stage(inputs, build, pixels)?);
     let position = || vec![Field::position(Domain::Plane)];
     let sight = build.kernel(Sight(Arc::clone(&stage)), position());
-    let light = build.kernel(Illumination(Arc::clone(&stage)), position());
-    let mut columns = vec![Field::position(Domain::Plane), sight.clone(), light];
+    let mut columns = vec![Field::position(Domain::Plane), sight.part(seen::PLACE, 3)];
+    columns.extend(lighting(&stage, &sight, build));
     let of = inputs.material("of");
     columns.extend(channels(of, &place(inputs, of, &sight, build)?));
     let bark = inputs.get("bark").map(|_| inputs.material("bark"));
@@ -205,6 +206,21 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         ranges: BTreeMap::new(),
     };
     Ok(vec![Value::Maps(Arc::new(maps))])
+}
+
+/// The normals and surfaces that are lit, and how.
+fn lighting(stage: &Arc<Stage>, sight: &Field, build: &Build<'_>) -> [Field; 3] {
+    let surface = sight.part(seen::SURFACE, 1);
+    if stage.scene.relief.is_none() {
+        let position = vec![Field::position(Domain::Plane)];
+        let light = build.kernel(Illumination(Arc::clone(stage)), position);
+        return [sight.part(seen::NORMAL, 3), surface, light];
+    }
+    let lighting = Lighting(Arc::clone(stage));
+    let (normal, columns) = (lighting.normal(), lighting.width());
+    let light = build.kernel(lighting, vec![sight.clone()]);
+    let smooth = build.kernel(SmoothLight { columns }, vec![light]);
+    [smooth.part(normal, 3), surface, smooth.part(0, normal)]
 }
 
 /// Where the material of the mesh is evaluated.

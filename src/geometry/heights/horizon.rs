@@ -36,8 +36,12 @@ impl Heights {
         };
         let highest = self.range[1] - point.z;
         let mut steepest = rises.least;
-        // Close to the point everything counts, so the smallest squares come first.
-        line.walk(self, (stretch, 0), |square| {
+        // Close to a point over the surface everything counts, so the smallest squares come first.
+        let level = match self.is_over(point.truncate()) {
+            true => 0,
+            false => usize::MAX,
+        };
+        line.walk(self, (stretch, level), |square| {
             let Stretch { from, to } = square.stretch;
             let wanted = steepest + rises.tolerance;
             match square.holds {

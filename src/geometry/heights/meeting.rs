@@ -56,10 +56,8 @@ impl Heights {
     /// A ray along the heights themselves.
     fn straight_down(&self, ray: &Ray) -> Option<(f64, bool)> {
         let (origin, down) = (ray.point(0.0), ray.direction().z);
-        let [width, height] = [0, 1].map(|axis| self.cell[axis] * self.cells[axis] as f64);
-        let is_over = (0.0..=width).contains(&origin.x) && (0.0..=height).contains(&origin.y);
         let distance = (self.height(origin.truncate()) - origin.z) / down;
-        (is_over && down < 0.0).then_some((distance.max(0.0), false))
+        (self.is_over(origin.truncate()) && down < 0.0).then_some((distance.max(0.0), false))
     }
 }
 

@@ -8,7 +8,7 @@ mod slope;
 #[cfg(test)]
 mod tests;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 pub(crate) use self::horizon::Rises;
 
@@ -74,14 +74,24 @@ impl Heights {
         self.range
     }
 
-    /// Where a corner lies.
-    pub(crate) fn place(&self, [x, y]: [usize; 2]) -> DVec2 {
-        self.cell * DVec2::new(x as f64, y as f64)
+    /// Where a corner of the surface is.
+    pub(crate) fn point(&self, [x, y]: [usize; 2]) -> DVec3 {
+        (self.cell * DVec2::new(x as f64, y as f64)).extend(self.corner([x, y]))
     }
 
     /// The height of a corner.
-    pub(crate) fn corner(&self, [x, y]: [usize; 2]) -> f64 {
+    fn corner(&self, [x, y]: [usize; 2]) -> f64 {
         f64::from(self.corners[y * (self.cells[0] + 1) + x])
+    }
+
+    /// Whether a place lies over the rectangle.
+    pub(crate) fn is_over(&self, place: DVec2) -> bool {
+        (0..2).all(|axis| (0.0..=self.cell[axis] * self.cells[axis] as f64).contains(&place[axis]))
+    }
+
+    /// The shorter side of a cell.
+    pub(crate) fn finest(&self) -> f64 {
+        self.cell.min_element()
     }
 
     /// The cell over a place, or the nearest, and where in it the place lies, from 0 to 1.

@@ -5,8 +5,9 @@
 
 use super::camera::Camera;
 use super::light::{Disc, Light, Sky, Turn};
+use super::relief::Guide;
 use super::scene::{Point, Scene};
-use crate::field::{Block, Kernel};
+use crate::field::{Block, InputColumn, Kernel};
 use crate::geometry::hierarchy::Ray;
 use crate::key::KeyHasher;
 use glam::DVec3;
@@ -20,13 +21,15 @@ pub(super) mod seen {
     pub(in super::super) const NORMAL: usize = 3;
     /// The number of the surface; 0 where there is none.
     pub(in super::super) const SURFACE: usize = 6;
+    /// How many of the columns the shading reads.
+    pub(in super::super) const SHADED: usize = 7;
     /// The place on the square of a mesh's maps, and 0.
     pub(in super::super) const COORDINATES: usize = 7;
     /// How many there are.
     pub(in super::super) const ALL: usize = 10;
 }
 
-/// What the columns of [`Illumination`] hold, by the first of each.
+/// What the columns of [`Illumination`], or of a relief's, hold, by the first of each.
 pub(super) mod lit {
     /// The share of the sky that is seen; less than 0 where there is not even ground.
     pub(in super::super) const OPENNESS: usize = 0;
@@ -37,7 +40,7 @@ pub(super) mod lit {
 }
 
 /// What stands for the share of the sky that is seen, where a ray meets nothing.
-const NOWHERE: f64 = -1.0;
+pub(super) const NOWHERE: f64 = -1.0;
 
 /// Everything but the materials.
 #[derive(Debug)]
@@ -47,6 +50,8 @@ pub(super) struct Stage {
     pub(super) lights: Vec<Light>,
     pub(super) disc: Disc,
     pub(super) sky: Sky,
+    /// For relief.
+    pub(super) guide: Option<Guide>,
 }
 
 impl Stage {
@@ -63,7 +68,11 @@ impl Stage {
     /// What is seen at a point of the picture: a thing, or the ground.
     fn look(&self, u: f64, v: f64) -> (Ray, Option<Point>) {
         let ray = self.camera.ray(u, v);
-        let seen = self.scene.look(&ray);
+        let relief = self.scene.relief.iter();
+        let near = relief
+            .zip(&self.guide)
+            .find_map(|(relief, guide)| guide.look((relief, &self.camera), &ray, [u, v]));
+        let seen = near.or_else(|| self.scene.look(&ray));
         (ray, seen.or_else(|| self.scene.ground_point(&ray)))
     }
 }
@@ -87,8 +96,8 @@ impl Kernel for Sight {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        each(block, |u, v, row| {
-            let (ray, point) = self.0.look(u, v);
+        each(block, |position, row| {
+            let (ray, point) = self.0.look(position[0], position[1]);
             let point =
                 point.unwrap_or_else(|| Point::on_plane(DVec3::ZERO, -ray.direction(), 0.0));
             row[seen::PLACE..][..3].copy_from_slice(&point.place.to_array());
@@ -127,39 +136,39 @@ impl Kernel for Illumination {
             sky,
             ..
         } = &*self.0;
-        each(block, |u, v, row| {
+        each(block, |position, row| {
+            let (u, v) = (position[0], position[1]);
             let Some(point) = self.0.look(u, v).1 else {
                 row.fill(0.0);
                 row[lit::OPENNESS] = NOWHERE;
                 return;
             };
-            let (of_sky, of_lights) = match &scene.relief {
-                Some(relief) => relief.light(&point, sky, lights),
-                None => {
-                    let turn = Turn::at(u, v);
-                    let seen = |light: &Light| light.visibility(scene, disc, &point, &turn);
-                    (
-                        sky.light(Some(scene), &point, &turn),
-                        lights.iter().map(seen).collect(),
-                    )
-                }
-            };
+            let turn = Turn::at(u, v);
+            let of_sky = sky.light(Some(scene), &point, &turn);
             row[lit::OPENNESS] = of_sky.openness;
             row[lit::SKY..][..3].copy_from_slice(&of_sky.colour);
-            row[lit::LIGHTS..].copy_from_slice(&of_lights);
+            for (part, light) in row[lit::LIGHTS..].iter_mut().zip(lights) {
+                *part = light.visibility(scene, disc, &point, &turn);
+            }
         });
     }
 }
 
-/// Writes a row of columns for every point of the picture.
-fn each(block: &mut Block<'_>, mut write: impl FnMut(f64, f64, &mut [f64])) {
-    let (u, v) = (block.inputs[0].values, block.inputs[1].values);
+/// Writes a row of columns for every row of the inputs.
+pub(super) fn each(block: &mut Block<'_>, mut write: impl FnMut(&[f64], &mut [f64])) {
     let mut row = vec![0.0; block.outputs.len()];
-    for index in 0..u.len() {
+    let mut inputs = vec![0.0; block.inputs.len()];
+    for index in 0..block.outputs[0].len() {
         // Columns are padded with copies of the last sample.
-        let is_copy = index > 0 && [u, v].iter().all(|it| it[index] == it[index - 1]);
+        let is_copy = index > 0 && {
+            let is_same = |it: &InputColumn<'_>| it.values[index] == it.values[index - 1];
+            block.inputs.iter().all(is_same)
+        };
         if !is_copy {
-            write(f64::from(u[index]), f64::from(v[index]), &mut row);
+            for (input, column) in inputs.iter_mut().zip(block.inputs) {
+                *input = f64::from(column.values[index]);
+            }
+            write(&inputs, &mut row);
         }
         for (output, value) in block.outputs.iter_mut().zip(&row) {
             output[index] = *value as f32;

@@ -22,6 +22,9 @@ pub(super) const MATERIAL: usize = 7;
 const PLAIN: f32 = 0.04;
 
 /// Shades; the first input are the picture's positions, then what is seen, how it is lit, and the materials.
+///
+/// What is seen of relief, and how it is lit, are means over pixels; of a light these are of how much of it falls on the
+/// surface.
 #[derive(Debug)]
 pub(super) struct Shade {
     pub(super) stage: Arc<Stage>,
@@ -44,12 +47,9 @@ const SHADOW: f32 = 0.3;
 /// How much a step of a pixel's width away from the camera counts where edges are looked for.
 const DEPTH: f32 = 0.02;
 
-/// How much the brightness of relief counts where edges are looked for: it has no detail finer than a pixel.
-const RELIEF: f32 = 0.25;
-
 /// Columns before those of what is seen, and before those of how it is lit.
 const SEEN: usize = 3;
-const LIT: usize = SEEN + seen::ALL;
+const LIT: usize = SEEN + seen::SHADED;
 
 /// A surface at one sample.
 #[derive(Clone, Copy)]
@@ -59,6 +59,14 @@ struct Surface {
     metalness: f32,
     occlusion: f32,
 }
+
+/// The sides of a flat piece, of which its material knows only the upper edge.
+const SIDE: Surface = Surface {
+    colour: Vec3::new(0.15, 0.146, 0.14),
+    roughness: 0.9,
+    metalness: 0.0,
+    occlusion: 1.0,
+};
 
 impl Kernel for Shade {
     fn add_to_key(&self, key: &mut KeyHasher) {
@@ -112,22 +120,29 @@ impl Shade {
         let column = |first: usize| inputs[first].values[index];
         let vector = |first: usize| Vec3::new(column(first), column(first + 1), column(first + 2));
         let number = column(SEEN + seen::SURFACE);
-        let normal = vector(SEEN + seen::NORMAL);
+        let normal = match self.stage.scene.relief {
+            Some(_) => vector(SEEN + seen::NORMAL).normalize_or(Vec3::Z),
+            None => vector(SEEN + seen::NORMAL),
+        };
         let place = vector(SEEN + seen::PLACE);
         let sky = vector(LIT + lit::SKY);
         let openness = column(LIT + lit::OPENNESS);
-        let lights = self.lights(place, |light| column(LIT + lit::LIGHTS + light));
+        let lights = self.lights(place, normal, |light| column(LIT + lit::LIGHTS + light));
         if number == 0.0 {
             return self.ground(openness >= 0.0, normal, sky, &lights);
         }
         let is_bark = self.has_bark && !is_cut_face(number as u32);
         let first = self.materials() + if is_bark { MATERIAL } else { 0 };
         let value = |part: usize| column(first + part);
-        let surface = Surface {
-            colour: Vec3::new(value(0), value(1), value(2)).clamp(Vec3::ZERO, Vec3::ONE),
-            roughness: value(4).clamp(0.045, 1.0),
-            metalness: value(5).clamp(0.0, 1.0),
-            occlusion: value(6).clamp(0.0, 1.0),
+        let is_side = self.stage.scene.relief.is_some() && is_cut_face(number as u32);
+        let surface = match is_side {
+            true => SIDE,
+            false => Surface {
+                colour: Vec3::new(value(0), value(1), value(2)).clamp(Vec3::ZERO, Vec3::ONE),
+                roughness: value(4).clamp(0.045, 1.0),
+                metalness: value(5).clamp(0.0, 1.0),
+                occlusion: value(6).clamp(0.0, 1.0),
+            },
         };
         let bent = if self.has_relief {
             bend(normal, inputs, index, first + 3)
@@ -147,16 +162,25 @@ impl Shade {
             light += surface.reflect(bent, towards, lit);
         }
         light *= self.exposure;
+        [
+            light.x,
+            light.y,
+            light.z,
+            self.edge(number, place, normal, sky, &lights),
+        ]
+    }
+
+    /// The number by which edges are found.
+    fn edge(&self, number: f32, place: Vec3, normal: Vec3, sky: Vec3, lights: &[Lit]) -> f32 {
+        if self.stage.scene.relief.is_some() {
+            return number + self.depth(place);
+        }
         let facing =
             |lit: &Lit| luminance(lit.colour.to_array()) * normal.dot(lit.direction).max(0.0);
         let whole: f32 = lights.iter().map(facing).sum();
         let lit: f32 = lights.iter().map(|lit| facing(lit) * lit.visibility).sum();
         let shadow = (lit + luminance(sky.to_array())).sqrt();
-        let edge = match self.stage.scene.relief {
-            Some(_) => number + RELIEF * (whole + SHADOW * shadow) + self.depth(place),
-            None => number + whole + SHADOW * shadow,
-        };
-        [light.x, light.y, light.z, edge]
+        number + whole + SHADOW * shadow
     }
 
     /// What makes edges of a relief before itself count: how far away it is.
@@ -164,15 +188,22 @@ impl Shade {
         DEPTH * self.stage.camera.pixels_away(place.as_dvec3()) as f32
     }
 
-    /// The lights as they reach a place.
-    fn lights(&self, place: Vec3, visibility: impl Fn(usize) -> f32) -> Vec<Lit> {
+    /// The lights as they reach a place, by their columns.
+    fn lights(&self, place: Vec3, normal: Vec3, column: impl Fn(usize) -> f32) -> Vec<Lit> {
         let lit = |(index, light): (usize, &super::light::Light)| {
             let seen = light.seen(place.as_dvec3());
+            let direction = seen.direction.as_vec3();
+            let (facing, column) = (normal.dot(direction), column(index));
             Lit {
-                direction: seen.direction.as_vec3(),
+                direction,
                 width: seen.width as f32,
                 colour: DVec3::from_array(light.colour).as_vec3() * seen.falloff as f32,
-                visibility: visibility(index),
+                visibility: match self.stage.scene.relief {
+                    Some(_) if facing > 0.0 => column / facing,
+                    Some(_) => 0.0,
+                    None => column,
+                },
+                mean: self.stage.scene.relief.is_some().then_some(column),
             }
         };
         self.stage.lights.iter().enumerate().map(lit).collect()
@@ -191,7 +222,11 @@ impl Shade {
         };
         let shaded = background * share;
         let brightness = luminance(share.to_array()).max(0.0);
-        [shaded.x, shaded.y, shaded.z, SHADOW * brightness.sqrt()]
+        let edge = match self.stage.scene.relief {
+            Some(_) => 0.0,
+            None => SHADOW * brightness.sqrt(),
+        };
+        [shaded.x, shaded.y, shaded.z, edge]
     }
 
     /// What the surface reflects of the sky.
@@ -240,6 +275,8 @@ struct Lit {
     /// Without anything in the way.
     colour: Vec3,
     visibility: f32,
+    /// How much falls on the surface, if that is known as a mean.
+    mean: Option<f32>,
 }
 
 impl Surface {
@@ -254,8 +291,9 @@ impl Surface {
 
     /// What is reflected of a light.
     fn reflect(&self, normal: Vec3, towards: Vec3, lit: &Lit) -> Vec3 {
-        let facing_light = normal.dot(lit.direction);
-        if facing_light <= 0.0 {
+        let facing_light = normal.dot(lit.direction).max(0.0);
+        let falling = lit.mean.unwrap_or(facing_light * lit.visibility);
+        if falling <= 0.0 {
             return Vec3::ZERO;
         }
         let facing = normal.dot(towards).clamp(1e-3, 1.0);
@@ -274,7 +312,7 @@ impl Surface {
         let fresnel = straight + (Vec3::ONE - straight) * power;
         let mirror = fresnel * (density * hidden * PI);
         let diffuse = self.diffuse() * (Vec3::ONE - fresnel);
-        (diffuse + mirror) * lit.colour * (facing_light * lit.visibility)
+        (diffuse + mirror) * lit.colour * falling
     }
 }
 

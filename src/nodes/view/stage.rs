@@ -4,7 +4,7 @@ use super::camera::Camera;
 use super::light::{Disc, Light, Sky};
 use super::rays::Stage;
 use super::record::Record;
-use super::relief::{Layout, Relief};
+use super::relief::{Guide, Layout, Relief};
 use super::scene::{Cut, MOST_CUTS, Scene, Thing};
 use super::size_of;
 use crate::geometry::mesh::{Open, check_closed};
@@ -49,6 +49,7 @@ pub(super) fn stage(
         });
     }
     Ok(Stage {
+        guide: show.relief.as_ref().map(|_| Guide::new(size)),
         sky: Sky::read(&Record::of(inputs.get("sky")), directions(inputs), reach),
         scene: Scene {
             things: show.thing.into_iter().collect(),

@@ -6,6 +6,7 @@
 //! corner's own slope). Corners are looked at when they are first asked for, in tiles.
 
 use super::Relief;
+use super::tile::{SIDE, Tile};
 use crate::geometry::heights::{Heights, Rises};
 use crate::nodes::view::light::{Light, Seen, Sky, SkyLight, Turn};
 use crate::nodes::view::scene::{Point, is_cut_face};
@@ -14,10 +15,10 @@ use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 /// Corners along each side of a tile.
-const TILE: usize = 16;
+pub(super) const TILE: usize = 16;
 
 /// Numbers that are kept of the sky.
-const OF_SKY: usize = 8;
+pub(super) const OF_SKY: usize = 8;
 
 /// Strips into which the face of a wide light is cut.
 const STRIPS: usize = 7;
@@ -122,16 +123,16 @@ fn tile(relief: &Relief, first: [usize; 2], lights: &[Light]) -> Vec<f32> {
     let heights = &relief.heights;
     let width = OF_SKY + lights.len();
     let mut tile = vec![0.0; TILE * TILE * width];
+    let sky = Tile { relief, first }.sky();
     for (index, numbers) in tile.chunks_exact_mut(width).enumerate() {
-        let corner = [first[0] + index % TILE, first[1] + index / TILE];
-        if (0..2).any(|axis| corner[axis] > heights.cells()[axis]) {
+        let at = [index % TILE, index / TILE];
+        let Some(of_sky) = sky[at[1] * SIDE + at[0]] else {
             continue;
-        }
-        let place = heights.place(corner);
-        let point = place.extend(heights.corner(corner));
-        let found = at(relief, point, relief.normal(place), lights);
-        for (number, found) in numbers.iter_mut().zip(found) {
-            *number = found as f32;
+        };
+        let point = heights.point([first[0] + at[0], first[1] + at[1]]);
+        numbers[..OF_SKY].copy_from_slice(&of_sky);
+        for (number, light) in numbers[OF_SKY..].iter_mut().zip(lights) {
+            *number = visible(heights, point, light) as f32;
         }
     }
     tile
@@ -139,14 +140,20 @@ fn tile(relief: &Relief, first: [usize; 2], lights: &[Light]) -> Vec<f32> {
 
 /// What a point with a normal sees of the sky and of the lights.
 fn at(relief: &Relief, point: DVec3, normal: DVec3, lights: &[Light]) -> Vec<f64> {
-    let heights = &relief.heights;
-    let open = around(heights, point, normal, &relief.map.slices);
-    let of_sky = open.iter().flat_map(|open| {
-        let [x, y, z] = open.towards.to_array();
-        [open.even, x, y, z]
-    });
-    let of_lights = lights.iter().map(|light| visible(heights, point, light));
-    of_sky.chain(of_lights).collect()
+    let of_lights = lights
+        .iter()
+        .map(|light| visible(&relief.heights, point, light));
+    sky(relief, point, normal)
+        .into_iter()
+        .chain(of_lights)
+        .collect()
+}
+
+/// What a point with a normal sees of the sky.
+pub(super) fn sky(relief: &Relief, point: DVec3, normal: DVec3) -> [f64; OF_SKY] {
+    let [even, high] = around(&relief.heights, point, normal, &relief.map.slices);
+    let ([a, b, c], [e, f, g]) = (even.towards.to_array(), high.towards.to_array());
+    [even.even, a, b, c, high.even, e, f, g]
 }
 
 /// What a point sees of an even sky, and of one as bright as it is high.

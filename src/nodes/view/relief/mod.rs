@@ -3,10 +3,15 @@
 //! Its corner lies at the origin, its height 0 at z = 0. The heights are sampled once for a view, when it is built, as
 //! finely as the picture shows them; kernels hold what came of it, and its key is that of the field.
 
+mod guide;
 mod light;
+mod lighting;
 mod raster;
+mod tile;
 
+pub(super) use self::guide::Guide;
 use self::light::LightMap;
+pub(super) use self::lighting::{Lighting, SmoothLight};
 use self::raster::Corners;
 use super::light::{Light, Sky, SkyLight};
 use super::scene::{Point, relief_surface};
@@ -75,7 +80,7 @@ impl Relief {
         let thickness = layout
             .thickness
             .unwrap_or(THICKNESS * 0.5 * (size.x + size.y));
-        let mut key = KeyHasher::new("relief", 1);
+        let mut key = KeyHasher::new("relief", 2);
         key.key(field.key()).number(factor).number(thickness);
         material.charts().iter().for_each(|chart| {
             key.key(chart.key());
@@ -114,6 +119,25 @@ impl Relief {
             coordinates,
             surface,
             ..Point::on_plane(place, normal, distance)
+        })
+    }
+
+    /// The distance at which a ray meets it from above.
+    fn distance(&self, ray: &Ray) -> Option<f64> {
+        let (distance, is_edge) = self.heights.first(ray)?;
+        (!is_edge).then_some(distance)
+    }
+
+    /// The point at a distance along a ray, if it lies no further than `close` above or below the surface.
+    fn near(&self, ray: &Ray, distance: f64, close: f64) -> Option<Point> {
+        let place = ray.point(distance);
+        let coordinates = place.truncate();
+        let is_near = self.heights.is_over(coordinates)
+            && (place.z - self.heights.height(coordinates)).abs() <= close;
+        is_near.then(|| Point {
+            coordinates,
+            surface: relief_surface(None),
+            ..Point::on_plane(place, self.normal(coordinates), distance)
         })
     }
 
