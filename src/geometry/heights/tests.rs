@@ -72,7 +72,7 @@ fn horizons_are_those_of_small_steps() {
     for index in 0..300 {
         let part = |number: u64| noise(index * 10 + number + 50_000);
         let corner = [(part(0) * 37.0) as usize, (part(1) * 23.0) as usize];
-        let point = heights.place(corner).extend(heights.corner(corner));
+        let point = heights.point(corner);
         let angle = part(2) * 7.0;
         let direction = DVec2::new(libm::cos(angle), libm::sin(angle));
         let slope = |step: i32| {
