@@ -74,24 +74,15 @@ impl Force {
     /// The share of the corners in the sum.
     #[inline]
     fn of_corners(&self, point: DVec2) -> f64 {
-        match self.count {
-            4 => self.of_first::<4>(point),
-            5 => self.of_first::<5>(point),
-            6 => self.of_first::<6>(point),
-            _ => self.of_first::<3>(point),
+        let mut sum = 0.0;
+        for corner in &self.corners[..self.count] {
+            let square = self.inverse * self.inverse * point.distance_squared(*corner);
+            // Most corners are too far away, so their roots are not taken.
+            if square < 2.25 {
+                sum += (1.25 * square.sqrt() - 2.375) * square + 1.125;
+            }
         }
-    }
-
-    /// The same for a number of corners that the compiler knows, without branches: at the end of its reach the cubic is 0.
-    #[inline]
-    fn of_first<const COUNT: usize>(&self, point: DVec2) -> f64 {
-        let mut squares = [0.0; COUNT];
-        for (square, corner) in squares.iter_mut().zip(&self.corners) {
-            let found = self.inverse * self.inverse * point.distance_squared(*corner);
-            *square = if found < 2.25 { found } else { 2.25 };
-        }
-        let cubics = squares.map(|square| (1.25 * square.sqrt() - 2.375) * square + 1.125);
-        CORNER * cubics.iter().sum::<f64>()
+        CORNER * sum
     }
 
     /// The force on another particle at a point in the particle's frame, in stones; none in its very middle.
