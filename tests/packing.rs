@@ -120,6 +120,42 @@ fn ten_thousand_stones_follow_the_plaza_and_leave_nothing_out() {
 }
 
 #[test]
+fn joints_of_natural_stones_vary_and_leave_no_places_empty() {
+    let region = plaza("fischmarktplatz", "Fischmarktplatz");
+    let side = (region_area(&region) / 10_000.0).sqrt();
+    let given = [("region", region.clone()), ("stone", Value::Number(side))];
+    let cells = packed(&given).unwrap();
+    let joints = |vary: [f64; 2], each: &'static str| {
+        let given = [
+            ("of", Value::Partition(Arc::clone(&cells))),
+            ("joint", Value::Number(12.0)),
+            ("vary", Value::Pair(vary)),
+            ("each", Value::Choice(each)),
+            ("round", Value::Number(0.0)),
+            ("round_vary", Value::Pair([1.0, 1.0])),
+            ("least", Value::Number(0.0)),
+            ("seed", Value::Whole(0)),
+        ];
+        let Value::Partition(stones) = built(kind("inset_cells").unwrap(), &given).unwrap() else {
+            panic!("expected a partition");
+        };
+        measured(&stones, &region)
+    };
+    for each in ["edge", "cell"] {
+        let found = joints([0.6, 1.4], each);
+        assert!((found["joint_mm"] - 12.0).abs() < 0.3, "{each}: {found:?}");
+        let variation = found["joint_variation"];
+        assert!(variation > 0.1 && variation < 0.3, "{each}: {found:?}");
+        assert!(found["occupancy"] > 0.999, "{each}: {found:?}");
+        assert!(found["largest_overlap"] < 1e-6, "{each}: {found:?}");
+        assert_eq!(found["across_outline"], 0.0, "{each}: {found:?}");
+    }
+    // What varies is what was asked for, not the packing.
+    let even = joints([1.0, 1.0], "edge");
+    assert!(even["joint_variation"] < 0.01, "{even:?}");
+}
+
+#[test]
 fn the_position_field_beats_particles_in_order_and_gaps_on_both_plazas() {
     for (name, part) in [
         ("fischmarktplatz", "Fischmarktplatz"),
@@ -260,7 +296,9 @@ fn hexagons_and_oblong_stones_have_their_shapes() {
         of.count() as f64 / partition.len() as f64
     };
     let hexagons = packed(&[ground.clone(), stone.clone(), ("corners", Value::Whole(6))]).unwrap();
-    assert!(with_corners(&hexagons, 6) > 0.6);
+    // One in eight lies at the border, where it has four or five.
+    let share = with_corners(&hexagons, 6);
+    assert!(share > 0.78, "{share}");
     let aspect = ("aspect", Value::Number(2.0));
     let bricks = packed(&[
         ground.clone(),
@@ -270,7 +308,8 @@ fn hexagons_and_oblong_stones_have_their_shapes() {
     ])
     .unwrap();
     // In a running bond two stones are above and two below.
-    assert!(with_corners(&bricks, 6) > 0.5);
+    let share = with_corners(&bricks, 6);
+    assert!(share > 0.65, "{share}");
     let mean = bricks.areas.iter().sum::<f64>() / bricks.len() as f64;
     assert!((mean / 2e4 - 1.0).abs() < 0.1, "{mean}");
     let pentagons = packed(&[

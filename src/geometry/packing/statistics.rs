@@ -15,6 +15,10 @@ const PLACES: usize = 3;
 /// How far it is looked for, in stones.
 const FAR: f64 = 1.5;
 
+/// From a place that sees nothing for this share of a stone, places that far to both sides look as well: what runs on between
+/// two stones beyond is a joint, and no empty place.
+const BESIDE: f64 = 0.05;
+
 /// A joint wider than this many medians is an empty place as to what is beyond.
 const WIDE: f64 = 3.0;
 
@@ -255,7 +259,7 @@ impl<'a> Ground<'a> {
             });
             parts.filter_map(move |(from, to, share)| {
                 let outward = -(to - from).perp().try_normalize()?;
-                let (width, is_outer) = self.beyond(cell as u32, from.lerp(to, share), outward);
+                let (width, is_outer) = self.facing(cell as u32, from.lerp(to, share), outward);
                 let length = from.distance(to) / PLACES as f64;
                 Some(Joint {
                     length,
@@ -270,7 +274,19 @@ impl<'a> Ground<'a> {
             .collect()
     }
 
-    /// How far the next stone or the outline is, and whether it is the outline.
+    /// How far the next stone or the outline is across the joint, and whether it is the outline.
+    fn facing(&self, cell: u32, from: DVec2, outward: DVec2) -> (f64, bool) {
+        let aside = BESIDE * self.size * outward.perp();
+        let found = self.beyond(cell, from, outward);
+        if found.0 < BESIDE * self.size {
+            return found;
+        }
+        let sides = [-aside, aside].map(|aside| self.beyond(cell, from + aside, outward));
+        let nearer = |best: (f64, bool), it: (f64, bool)| if it.0 < best.0 { it } else { best };
+        sides.into_iter().fold(found, nearer)
+    }
+
+    /// How far the next stone or the outline is straight ahead, and whether it is the outline.
     fn beyond(&self, cell: u32, from: DVec2, outward: DVec2) -> (f64, bool) {
         let (far, near) = (FAR * self.size, -1e-6 * self.size);
         let to = from + far * outward;

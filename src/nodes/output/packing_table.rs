@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Writes the quality of a packing as CSV.
 pub static KIND: Kind = Kind {
     name: "packing_table",
-    version: 1,
+    version: 2,
     about: "Writes how good a packing is as a CSV file: order, angles to the field, occupancy, joints, overlaps, stones across \
             the outline; stands in `outputs`.",
     source: "own construction",
