@@ -166,18 +166,26 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let find = Find {
         key: laid.ground.key(),
         ground: laid.ground,
-        widest: laid.widest as f32,
     };
-    let found = build.kernel(find, vec![Field::position(Domain::Plane)]);
+    let widest = laid.widest as f32;
+    let place = Field::position(Domain::Plane);
+    let found = build.kernel(find, vec![place.clone()]);
     let [bed, chips, face] = ["bed", "chips", "relief"].map(|name| inputs.field(name));
     let joint = inputs.number("joint") as f32;
-    let relief = build.kernel(Relief { joint }, vec![found.part(0, 4), bed, chips, face]);
-    let of_stone = |columns: Vec<Vec<f32>>, is_mean| {
-        build.kernel(OfStone::new(columns, is_mean), vec![found.part(4, 3)])
+    let relief = Relief { joint, widest };
+    let relief = build.kernel(
+        relief,
+        vec![found.part(0, 4), bed, chips, face, place.clone()],
+    );
+    let of_stone = |columns: Vec<Vec<f32>>, widest: Option<f32>| {
+        build.kernel(
+            OfStone::new(columns, widest),
+            vec![found.part(4, 3), place.clone()],
+        )
     };
     let [colours, optics, chances] =
-        [colours, optics, chances].map(|columns| of_stone(columns, true));
-    let numbers = of_stone(numbers, false);
+        [colours, optics, chances].map(|columns| of_stone(columns, Some(widest)));
+    let numbers = of_stone(numbers, None);
     let id = build.kernel(Shown, vec![relief.part(1, 1), numbers.part(1, 1)]);
     let fields = [
         relief.part(0, 1),

@@ -7,7 +7,7 @@ use super::cage::Cage;
 use glam::{DVec3, Vec2};
 
 /// Bins along each side of the grid.
-const SIDE: usize = 8;
+const SIDE: usize = 16;
 
 /// Edges are straight where the surface stands steeper than this, as the upward part of its normal.
 const STEEP: f64 = 0.25;

@@ -9,21 +9,26 @@ use glam::{DVec2, Vec2};
 
 /// Columns in: position. Columns out: mean height of the stones in the pixel, by how much it differs within, the share that
 /// they cover, depth inside the outline, number of the stone or of the nearest, -1 for none, number of another stone in the
-/// pixel, and its share of what is covered.
+/// pixel, and its share of what is covered. Numbers have no means, so no pixel is divided here.
 #[derive(Debug)]
 pub(super) struct Find {
     pub(super) ground: Ground,
     pub(super) key: Key,
-    /// Pixels that are wider than this in mm hold too many stones to look at each.
-    pub(super) widest: f32,
+}
+
+/// Pixels in which `x`, a column in, changes by more than `widest` mm hold more than this filters: the engine divides them.
+fn divided(x: usize, widest: f32) -> Sampling {
+    Sampling::FilteredWhereEven {
+        column: x,
+        absolute: widest,
+    }
 }
 
 impl Kernel for Find {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("stones at a point")
             .whole(i64::from(KIND.version))
-            .key(self.key)
-            .number(f64::from(self.widest));
+            .key(self.key);
     }
 
     fn width(&self) -> usize {
@@ -32,13 +37,6 @@ impl Kernel for Find {
 
     fn reads_spread(&self, column: usize) -> bool {
         column < 2
-    }
-
-    fn sampling(&self) -> Sampling {
-        Sampling::FilteredWhereEven {
-            column: 0,
-            absolute: self.widest,
-        }
     }
 
     fn nanoseconds(&self) -> f32 {
@@ -76,22 +74,29 @@ const CHIP: f32 = 1.5;
 const SHADED: f32 = 5.0;
 
 /// What shows of stones above their bed. Columns in: the first four of [`Find`]; height of the bed, width of the chips,
-/// relief. Columns out: height, mask, depth, recess.
+/// relief, position. Columns out: height, mask, depth, recess.
 #[derive(Debug)]
 pub(super) struct Relief {
     /// Width of the joints in mm.
     pub(super) joint: f32,
+    /// Change of x within a pixel, in mm, up to which it is not divided.
+    pub(super) widest: f32,
 }
 
 impl Kernel for Relief {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("relief of stones")
             .whole(i64::from(KIND.version))
-            .number(f64::from(self.joint));
+            .number(f64::from(self.joint))
+            .number(f64::from(self.widest));
     }
 
     fn width(&self) -> usize {
         4
+    }
+
+    fn sampling(&self) -> Sampling {
+        divided(7, self.widest)
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
@@ -129,18 +134,19 @@ fn positive(middle: f32, range: f32) -> [f32; 2] {
     }
 }
 
-/// What belongs to a stone, by its number. Columns in: the last three of [`Find`].
+/// What belongs to a stone, by its number. Columns in: the last three of [`Find`], position.
 #[derive(Debug)]
 pub(super) struct OfStone {
     /// For each column the value of every stone, and behind them that of no stone.
     pub(super) columns: Vec<Vec<f32>>,
     pub(super) key: Key,
-    /// Whether pixels with two stones are means, as opposed to what most of it is.
-    pub(super) is_mean: bool,
+    /// Change of x within a pixel, in mm, up to which it is not divided, if pixels with two stones are means and not what
+    /// most of it is.
+    pub(super) widest: Option<f32>,
 }
 
 impl OfStone {
-    pub(super) fn new(columns: Vec<Vec<f32>>, is_mean: bool) -> OfStone {
+    pub(super) fn new(columns: Vec<Vec<f32>>, widest: Option<f32>) -> OfStone {
         let mut key = KeyHasher::new("table of stones", 1);
         for column in &columns {
             key.whole(column.len() as i64);
@@ -151,7 +157,7 @@ impl OfStone {
         OfStone {
             key: key.finish(),
             columns,
-            is_mean,
+            widest,
         }
     }
 }
@@ -161,11 +167,16 @@ impl Kernel for OfStone {
         key.text("what belongs to a stone")
             .whole(i64::from(KIND.version))
             .key(self.key);
-        key.whole(i64::from(self.is_mean));
+        key.number(self.widest.map_or(-1.0, f64::from));
     }
 
     fn width(&self) -> usize {
         self.columns.len()
+    }
+
+    fn sampling(&self) -> Sampling {
+        self.widest
+            .map_or(Sampling::Filtered, |widest| divided(3, widest))
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
@@ -175,7 +186,7 @@ impl Kernel for OfStone {
             let of = |number: f32| column[if number < 0.0 { none } else { number as usize }];
             for (index, value) in output.iter_mut().enumerate() {
                 *value = of(numbers[index]);
-                if self.is_mean && shares[index] > 0.0 {
+                if self.widest.is_some() && shares[index] > 0.0 {
                     *value += (of(others[index]) - *value) * shares[index];
                 }
             }

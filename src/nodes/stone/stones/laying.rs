@@ -20,7 +20,7 @@ pub(super) struct Laid {
     pub(super) records: Vec<usize>,
     /// The id of the cell.
     pub(super) ids: Vec<u32>,
-    /// Width in mm that pixels may have in which single stones are looked at.
+    /// Width in mm that pixels may have without being divided.
     pub(super) widest: f64,
     /// A random number from 0 to 1.
     pub(super) shares: Vec<f64>,
@@ -74,8 +74,8 @@ const ROUNDED: f64 = 0.75;
 /// Stones between two questions whether to go on.
 const AT_ONCE: usize = 4096;
 
-/// Pixels may be so wide, as a share of a stone, for no more than two stones to matter.
-const WIDEST: f64 = 0.25;
+/// Pixels may be so wide, as a share of a stone, for joints and rims to be straight in them.
+const WIDEST: f64 = 0.06;
 
 /// Lays the stones.
 ///
