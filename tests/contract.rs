@@ -304,6 +304,14 @@ fn pavements_keep_the_contract() {
 }
 
 #[test]
+#[ignore = "takes minutes: each pixel of fibres is many samples"]
+fn hybrids_keep_the_contract() {
+    keeps_it_from_1024("parquet", "floor", [1600.0, 1200.0], 4.0);
+    keeps_it_from_1024("oak_with_stones", "board", [180.0, 420.0], 4.0);
+    keeps_it_from_1024("medallion", "medallion", [640.0, 640.0], 4.0);
+}
+
+#[test]
 #[ignore = "takes minutes: a whole square of stones, and many samples in each pixel"]
 fn packed_pavements_keep_the_contract() {
     keeps_it_from_1024("miyata_03", "a_random", [3000.0, 3000.0], 10.0);

@@ -137,6 +137,11 @@ fn nodes_lists_and_describes_kinds() {
             "",
             "Compounds",
             "figured_wood",
+            "joint_grass",
+            "joint_sand",
+            "marble",
+            "pavement",
+            "slate",
             "streaked",
             "tree_wood",
             "wavy"

@@ -91,6 +91,7 @@ fn mixing_is_exact_at_both_ends_and_clamps() {
         ("b", Value::Colour(b)),
         ("amount", amount),
         ("mode", Value::Choice("normal")),
+        ("pixels", Value::Choice("divided")),
     ];
     let Value::Field(mixed) = build("mix", &inputs).unwrap().remove(0) else {
         panic!("no field")

@@ -201,7 +201,7 @@ fn cells_with_many_edges_are_found_alike() {
         } else {
             0.8 * radius
         };
-        DVec2::new(angle.cos(), angle.sin()) * radius
+        DVec2::new(libm::cos(angle), libm::sin(angle)) * radius
     };
     let outline = (0..200).map(|index| point(index, 10.0));
     let hole = (0..60).map(|index| point(200 - index * 3, 4.0));

@@ -82,12 +82,12 @@ impl Ground<'_> {
         let count = ring.len();
         let along = |index: usize| (ring[(index + 1) % count] - ring[index]).normalize_or(DVec2::X);
         let mut corners = vec![];
-        for index in 0..count {
+        for (index, corner) in ring.iter().enumerate() {
             let (before, after) = (along((index + count - 1) % count), along(index));
-            let half = 0.5 * self.stone.min_element() * self.guide.at(ring[index]).scale;
+            let half = 0.5 * self.stone.min_element() * self.guide.at(*corner).scale;
             let bisector = before.perp() + after.perp();
             let length = bisector.length_squared().max(0.4);
-            let moved = ring[index] + bisector * (2.0 * half / length);
+            let moved = *corner + bisector * (2.0 * half / length);
             corners.push((moved, before.dot(after) < SHARP));
         }
         let first = corners.iter().position(|corner| corner.1).unwrap_or(0);

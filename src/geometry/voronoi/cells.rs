@@ -99,7 +99,7 @@ impl<'a> Maker<'a> {
             if draft.cell.len() >= 3 {
                 (area, centre) = measure(at, &draft.cell);
                 if area > SAME * extent(&draft.cell) {
-                    self.into_first_period(&mut centre, &mut draft);
+                    self.move_into_first_period(&mut centre, &mut draft);
                     part.corners
                         .extend(draft.cell.iter().map(|corner| corner.0));
                     part.across.extend(draft.cell.iter().map(|corner| corner.1));
@@ -156,7 +156,7 @@ impl<'a> Maker<'a> {
     }
 
     /// Moves a cell by whole periods so that its centre is within the first.
-    fn into_first_period(&self, centre: &mut DVec2, draft: &mut Draft) {
+    fn move_into_first_period(&self, centre: &mut DVec2, draft: &mut Draft) {
         if !self.scale.repeats || self.ground.holds_within(*centre) {
             return;
         }

@@ -25,8 +25,8 @@ pub static KIND: Kind = Kind {
     outputs: &[Output::new("cells", Type::Partition, "The cells.")],
     example: "(nodes: {
         \"points\": region(outlines: [
-            (outline: [(50, 50), (60, 60), (100, 100)]),
-            (outline: [(50, 50), (40, 60), (0, 100)]),
+            (outline: [(50, 50), (70, 60), (100, 100)]),
+            (outline: [(50, 50), (0, 100), (30, 60)]),
         ]),
         \"example\": region_cells(of: \"points\"),
     })",

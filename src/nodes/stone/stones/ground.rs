@@ -46,8 +46,11 @@ pub(super) struct Ground {
     pub(super) cages: BTreeMap<usize, Cage>,
     pub(super) grid: Grid,
     /// Forms of stones that were looked at: they take long to make and much memory, so only some are kept.
-    pub(super) forms: Vec<Mutex<Option<(u32, Arc<Form>)>>>,
+    pub(super) forms: Vec<Mutex<KeptForm>>,
 }
+
+/// A form with the number of its stone, if one is kept.
+pub(super) type KeptForm = Option<(u32, Arc<Form>)>;
 
 /// Most forms that are kept: some ten megabytes.
 pub(super) const FORMS: usize = 2048;
