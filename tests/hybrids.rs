@@ -1,5 +1,9 @@
 //! Hybrids: a material for each cell, what it finds out about the cell, and materials let into others.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "the same sample of several fields is looked at"
+)]
 
 #[path = "support/workshop.rs"]
 #[allow(dead_code, reason = "hybrids need no log of events")]

@@ -378,7 +378,10 @@ fn a_cancelled_run_ends_soon() {
 fn what_cannot_be_packed_is_refused_in_words() {
     let message = |given: &[(&str, Value)]| packed(given).unwrap_err().message;
     let stone = ("stone", Value::Number(100.0));
-    assert_eq!(message(std::slice::from_ref(&stone)), "nothing says what is divided");
+    assert_eq!(
+        message(std::slice::from_ref(&stone)),
+        "nothing says what is divided"
+    );
     let ground = ("size", Value::Pair([1000.0, 1000.0]));
     let spread = ("spread", Value::Pair([1.2, 0.8]));
     assert_eq!(
