@@ -23,7 +23,7 @@ fn seeds_on_one_line_have_strips() {
         |share| (64.0 * share, 7.0),
         |share| (3.0, 32.0 * share),
         |share| (64.0 * share, 32.0 * share),
-        |share| (64.0 * share, 9.0 + 1e-14 * (share * 1e4).sin()),
+        |share| (64.0 * share, 9.0 + 1e-14 * libm::sin(share * 1e4)),
     ];
     for line in lines {
         let seeds: Vec<_> = (0..3000)
@@ -62,7 +62,10 @@ fn seeds_on_one_circle_share_its_middle() {
     for count in [8, 360, 3000] {
         let seed = |index: i32| {
             let angle = std::f64::consts::TAU * f64::from(index) / f64::from(count);
-            (32.0 + 12.0 * angle.cos(), 16.0 + 12.0 * angle.sin())
+            (
+                32.0 + 12.0 * libm::cos(angle),
+                16.0 + 12.0 * libm::sin(angle),
+            )
         };
         let seeds: Vec<_> = (0..count).map(seed).collect();
         let cells = split(given(points(&seeds), SIZE)).unwrap();

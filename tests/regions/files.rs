@@ -75,7 +75,7 @@ fn squares_have_the_areas_that_their_files_state() {
             }],
         });
         let found = outlines.map(|outline| area(&outline)).sum::<f64>() / 1e6;
-        let w = 1.0 - ECCENTRICITY_SQUARED * 47.3f64.to_radians().sin().powi(2);
+        let w = 1.0 - ECCENTRICITY_SQUARED * libm::sin(47.3f64.to_radians()).powi(2);
         let radii = 6_378_137f64.powi(2) * (1.0 - ECCENTRICITY_SQUARED) / (w * w);
         let stated = stated * radii * 1f64.to_radians().powi(2) / (111_320.0 * 110_540.0);
         assert!(

@@ -45,7 +45,7 @@ pub(crate) static QUADS: Kind = Kind {
 
 /// A number from -1 to 1 for a corner of the lattice.
 fn chance(x: i64, y: i64, axis: i64) -> f64 {
-    let mut mixed = (x * 73_856_093 ^ y * 19_349_663 ^ axis * 83_492_791) as u64;
+    let mut mixed = ((x * 73_856_093) ^ (y * 19_349_663) ^ (axis * 83_492_791)) as u64;
     for _ in 0..3 {
         mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

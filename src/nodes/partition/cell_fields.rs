@@ -5,11 +5,10 @@
 
 use super::found::{Found, Quantity};
 use crate::diagnostics::nearest;
-use crate::field::Field;
+use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::average::Average;
-use crate::nodes::field::threshold::transition;
 use crate::value::{Domain, Partition, Type, Unit, Value};
 
 /// Samples a partition.
@@ -116,7 +115,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let random = Quantity::Random(seed(build.seed, inputs.whole("seed")));
     let fields = [
         found.border(),
-        transition(build, found.border(), 0.0),
+        averaged(build.kernel(Inside, vec![found.border()])),
         of_cell(Quantity::Id),
         averaged(of_cell(random)),
         attribute,
@@ -155,11 +154,32 @@ fn attribute(partition: &Partition, name: &str) -> Result<Quantity, Failure> {
     Err(Failure::of_input("attribute", message).with_hint(hint))
 }
 
+/// 1 where the distance to the border is not below 0: between cells that touch, nothing is outside.
+#[derive(Debug)]
+struct Inside;
+
+impl Kernel for Inside {
+    fn add_to_key(&self, key: &mut KeyHasher) {
+        key.text("inside cells").whole(i64::from(KIND.version));
+    }
+
+    fn width(&self) -> usize {
+        1
+    }
+
+    fn evaluate(&self, block: &mut Block<'_>) {
+        let borders = block.inputs[0].values;
+        for (output, border) in block.outputs[0].iter_mut().zip(borders) {
+            *output = f32::from(u8::from(*border >= 0.0));
+        }
+    }
+}
+
 /// Columns in: place, middle and extent of the cell.
 #[derive(Debug)]
 struct Unitary;
 
-impl crate::field::Kernel for Unitary {
+impl Kernel for Unitary {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("unit of cell").whole(i64::from(KIND.version));
     }
@@ -168,7 +188,7 @@ impl crate::field::Kernel for Unitary {
         3
     }
 
-    fn evaluate(&self, block: &mut crate::field::Block<'_>) {
+    fn evaluate(&self, block: &mut Block<'_>) {
         for (axis, output) in block.outputs.iter_mut().enumerate() {
             let [place, middle, extent] = [0, 3, 6].map(|first| block.inputs[first + axis].values);
             for (index, unit) in output.iter_mut().enumerate() {
