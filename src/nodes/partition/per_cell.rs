@@ -120,9 +120,9 @@ pub static KIND: Kind = Kind {
         .on(Domain::Plane),
     ],
     example: r##"(nodes: {
-    "grain": solid_noise(size: (2, 2, 60)),
     "tone": cell_value(name: "random"),
-    "oak": material(base_color: "#c8a06e", height: "= 0.05 * grain.value", roughness: "= 0.5 + 0.2 * tone"),
+    "shade": mix(a: "#c8a06e", b: "#9a7444", amount: "tone"),
+    "oak": material(base_color: "shade", roughness: "= 0.5 + 0.2 * tone"),
     "ash": material(base_color: "#e8d8b8"),
     "blocks": voronoi_split(size: (100, 100), cell_size: 20),
     "example": per_cell(cells: "blocks", of: {"oak": "oak", "ash": "ash"}, scatter: (500, 500, 500)),
