@@ -125,8 +125,8 @@ pub static KIND: Kind = Kind {
     "slate": material(base_color: "#5b6066", roughness: 0.7),
     "board": slice_cut(of: "oak", origin: (0, 0, 0), across: (1, 0, 0), along: (0, 0, 1), size: (100, 100)),
     "plate": slice_cut(of: "slate", origin: (0, 0, 0), across: (1, 0, 0), along: (0, 0, 1), size: (100, 100)),
-    "stones": voronoi_split(size: (100, 100), cell_size: 30),
-    "example": inlay(ground: "board", of: "plate", cells: "stones", gap: 0.4),
+    "shape": region_shape(size: (70, 70), at: (15, 15), round: 12),
+    "example": inlay(ground: "board", of: "plate", region: "shape", gap: 0.4),
 })"##,
     build,
 };
