@@ -2,7 +2,7 @@
 
 pub mod mesh_cut;
 pub mod patch_cut;
-mod placed;
+pub(in crate::nodes) mod placed;
 pub mod rotary_cut;
 pub mod slice_cut;
 mod surface;

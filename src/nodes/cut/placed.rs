@@ -52,6 +52,29 @@ pub(super) fn placed(inputs: &Inputs<'_>) -> Result<DAffine3, Failure> {
         .affine())
 }
 
+/// Two directions of length 1 at right angles in the plane that `across` and `along` span; `blamed` is the input at fault if
+/// they span none.
+///
+/// # Errors
+/// If `across` has no length, or both point the same way.
+pub(in crate::nodes) fn spanned(
+    across: DVec3,
+    along: DVec3,
+    blamed: &'static str,
+) -> Result<[DVec3; 2], Failure> {
+    let Some(across) = across.try_normalize() else {
+        let message = "the direction `across` has no length";
+        return Err(Failure::of_input("across", message));
+    };
+    let rejected = along - across * across.dot(along);
+    if rejected.length() <= 1e-6 * along.length() {
+        let message = "`along` points the same way as `across`, so they span no plane";
+        return Err(Failure::of_input(blamed, message)
+            .with_hint("choose `along` at a right angle to `across`"));
+    }
+    Ok([across, rejected.normalize()])
+}
+
 /// The piece that shows the solid at `position`, `size` mm large.
 pub(super) fn piece(solid: &Material, position: &Field, size: [f64; 2]) -> Value {
     let channels = solid.channels.iter();

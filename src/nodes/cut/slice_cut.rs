@@ -11,7 +11,7 @@
 //! `turn` says from which side: at 0 the piece's width runs along +x. `placed` moves, turns and scales the whole piece, which then has the size
 //! that it has in the solid; one that becomes oblique is shown as if its sides stood at right angles.
 
-use super::placed::{PLACED, piece, placed};
+use super::placed::{PLACED, piece, placed, spanned};
 use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
@@ -141,23 +141,11 @@ impl Plane {
                     .with_hint("set `across` and `along`, or name the cut: `cut: plain_sawn`"),
             ),
         };
-        let (across, along) = (direction("across")?, direction("along")?);
-        let Some(across) = across.try_normalize() else {
-            return Err(Failure::of_input(
-                "across",
-                "the direction `across` has no length",
-            ));
-        };
-        let rejected = along - across * across.dot(along);
-        if rejected.length() <= 1e-6 * along.length() {
-            let message = "`along` points the same way as `across`, so they span no plane";
-            return Err(Failure::of_input("along", message)
-                .with_hint("choose `along` at a right angle to `across`"));
-        }
+        let [across, along] = spanned(direction("across")?, direction("along")?, "along")?;
         Ok(Plane {
             centre,
             across,
-            along: rejected.normalize(),
+            along,
         })
     }
 

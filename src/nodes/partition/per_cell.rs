@@ -147,7 +147,12 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let mut charts = vec![found.chart(build)];
     let mut channels: Vec<BTreeMap<String, Field>> = vec![];
     for (_, material) in &materials {
-        let laid = Laid::read(inputs, partition, material.domain, seed ^ PLACE)?;
+        let laid = Laid::read(
+            inputs,
+            (partition, found.key()),
+            material.domain,
+            seed ^ PLACE,
+        )?;
         let place = build.kernel(laid, vec![found.index(), found.place(), origin.clone()]);
         let here =
             |(name, field): (&String, &Field)| (name.clone(), field.at_given(&place, &given));

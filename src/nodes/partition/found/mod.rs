@@ -39,6 +39,11 @@ impl Found {
         }
     }
 
+    /// Identifies the partition.
+    pub(in crate::nodes) fn key(&self) -> Key {
+        self.key
+    }
+
     /// The index of the cell at a point, or of the nearest one.
     pub(in crate::nodes) fn index(&self) -> Field {
         self.columns.part(0, 1)

@@ -4,6 +4,7 @@ use super::KIND;
 use crate::field::{Block, Kernel};
 use crate::key::{Key, KeyHasher};
 use crate::node::{Failure, Inputs};
+use crate::nodes::cut::placed::spanned;
 use crate::nodes::partition::found::share;
 use crate::value::{Domain, Partition};
 use glam::{DVec2, DVec3};
@@ -39,7 +40,7 @@ impl Laid {
     /// How cells lie in a material of the domain.
     pub(super) fn read(
         inputs: &Inputs<'_>,
-        partition: &Arc<Partition>,
+        (partition, key): (&Arc<Partition>, Key),
         domain: Domain,
         seed: u64,
     ) -> Result<Laid, Failure> {
@@ -48,24 +49,15 @@ impl Laid {
             (None, Domain::Plane) => DVec3::Y,
             (None, _) => DVec3::Z,
         };
-        let Some(across) = inputs.vector("across").try_normalize() else {
-            return Err(Failure::of_input(
-                "across",
-                "the direction `across` has no length",
-            ));
-        };
-        let rejected = along - across * across.dot(along);
-        if rejected.length() <= 1e-6 * along.length() {
-            let message = "`along` points the same way as `across`, so they span no plane";
-            return Err(Failure::of_input("across", message)
-                .with_hint("choose `along` at a right angle to `across`"));
-        }
+        // What is left out cannot be at fault.
+        let blamed = inputs.get("along").map_or("across", |_| "along");
+        let [across, along] = spanned(inputs.vector("across"), along, blamed)?;
         Ok(Laid {
             partition: Arc::clone(partition),
-            key: partition.key(),
+            key,
             scatter: inputs.vector("scatter"),
             across,
-            along: rejected.normalize(),
+            along,
             spin: inputs.number("spin").to_radians(),
             turns: inputs.whole("turns") as f64,
             follows_cell: inputs.choice("frame") == "cell",
