@@ -20,7 +20,6 @@ mod top;
 
 use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
-use crate::nodes::average::Average;
 use crate::value::{Domain, Type, Unit, Value};
 use kernels::{Find, OfStone, Relief, Shown};
 use laying::{Laid, lay};
@@ -184,11 +183,8 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
             vec![found.part(4, 3), place.clone()],
         )
     };
-    let [colours, optics, chances] = [colours, optics, chances].map(|columns| {
-        // Where one stone's place ends and the next one's begins there is a step.
-        let width = columns.len();
-        build.kernel(Average { width }, vec![of_stone(columns, Some(widest))])
-    });
+    let [colours, optics, chances] =
+        [colours, optics, chances].map(|columns| of_stone(columns, Some(widest)));
     let numbers = of_stone(numbers, None);
     let id = build.kernel(Shown, vec![relief.part(1, 1), numbers.part(1, 1)]);
     let fields = [

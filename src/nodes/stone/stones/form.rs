@@ -4,10 +4,7 @@
 //! corners (Bazeley, Cheung, Irons & Zienkiewicz 1965); where the surface stands steep it is straight.
 
 use super::cage::Cage;
-use glam::{DVec3, Vec2};
-
-/// Bins along each side of the grid.
-const SIDE: usize = 16;
+use glam::{DVec3, UVec2, Vec2, Vec4};
 
 /// Edges are straight where the surface stands steeper than this, as the upward part of its normal.
 const STEEP: f64 = 0.25;
@@ -16,20 +13,28 @@ const STEEP: f64 = 0.25;
 #[derive(Debug)]
 pub(super) struct Form {
     low: Vec2,
-    /// Bins per mm.
+    /// Bins along each side of the grid, and bins per mm.
+    side: u32,
     scale: Vec2,
-    /// The first of each bin's triangles in `list`, and behind them its length.
+    /// The first of each bin's groups in `list`, and behind them its length.
     starts: Vec<u32>,
     list: Vec<u16>,
-    facets: Vec<Facet>,
+    groups: Vec<Group>,
 }
 
-/// A triangle seen from above.
+/// Four triangles seen from above; subdivision leaves four side by side where there was one.
 #[derive(Clone, Copy, Debug)]
+struct Group {
+    /// Where the triangles' first corners are; not a number for those that are not seen.
+    origins: [Vec4; 2],
+    /// The changes of the second and third corners' shares along x and y.
+    shares: [[Vec4; 2]; 2],
+    facets: [Facet; 4],
+}
+
+/// The surface over a triangle.
+#[derive(Clone, Copy, Debug, Default)]
 struct Facet {
-    origin: Vec2,
-    /// The changes of the second and third corner's share along x and y.
-    shares: [Vec2; 2],
     heights: [f32; 3],
     /// How much higher the tangent at corner i is at corner j than the surface; the six pairs (i, j) in the order
     /// 01, 02, 10, 12, 20, 21.
@@ -39,23 +44,38 @@ struct Facet {
 /// How far outside a triangle a point may lie, so that there are no cracks.
 const SLACK: f32 = -1e-5;
 
-impl Facet {
-    /// The height at a point, if the triangle is there.
-    #[inline]
-    fn height(&self, point: Vec2) -> Option<f32> {
-        let at = point - self.origin;
-        let [b, c] = self.shares.map(|share| share.dot(at));
+impl Group {
+    /// The height at a point where one of the triangles is higher than `lowest`, or that.
+    #[inline(always)]
+    fn height(&self, point: Vec2, lowest: f32) -> f32 {
+        let [x, y] = [point.x - self.origins[0], point.y - self.origins[1]];
+        let [b, c] = self.shares.map(|[along, across]| along * x + across * y);
         let a = 1.0 - b - c;
-        if a < SLACK || b < SLACK || c < SLACK {
-            return None;
+        let mut hits = a.min(b).min(c).cmpge(Vec4::splat(SLACK)).bitmask();
+        let mut highest = lowest;
+        while hits != 0 {
+            let lane = hits.trailing_zeros() as usize;
+            highest = highest.max(self.facets[lane].height([a[lane], b[lane], c[lane]]));
+            hits &= hits - 1;
         }
+        highest
+    }
+}
+
+impl Facet {
+    /// The height where the corners have these shares.
+    #[inline]
+    fn height(&self, [a, b, c]: [f32; 3]) -> f32 {
         let [ab, ac, ba, bc, ca, cb] = self.bends;
         let flat = a * self.heights[0] + b * self.heights[1] + c * self.heights[2];
         let sides =
             a * b * (a * ab + b * ba) + b * c * (b * bc + c * cb) + c * a * (c * ca + a * ac);
-        Some(flat + sides + 0.5 * a * b * c * (ab + ac + ba + bc + ca + cb))
+        flat + sides + 0.5 * a * b * c * (ab + ac + ba + bc + ca + cb)
     }
 }
+
+/// Least and largest x and y.
+type Bounds = [Vec2; 2];
 
 impl Form {
     /// The upper side over the corners of a prism: n below, then n on top.
@@ -68,59 +88,73 @@ impl Form {
         let slopes: Vec<Option<[f64; 2]>> =
             cage.tangents.iter().map(|it| slope(it, corners)).collect();
         let slope_of = |index: u32| slopes.get(index as usize).copied().flatten();
-        let triangles = cage.triangles.iter();
-        let facets = triangles.filter_map(|it| {
-            let corners = it.map(|index| points[index as usize]);
-            facet(corners, it.map(slope_of))
+        let groups = cage.triangles.chunks(4).filter_map(|triangles| {
+            group(triangles.iter().map(|it| {
+                let corners = it.map(|index| points[index as usize]);
+                (corners, it.map(slope_of))
+            }))
         });
-        let facets: Vec<(Facet, [Vec2; 2])> = facets.collect();
-        Form::in_bins(&facets)
+        Form::in_bins(&groups.collect::<Vec<_>>())
     }
 
-    /// Triangles with the boxes around them.
-    fn in_bins(facets: &[(Facet, [Vec2; 2])]) -> Form {
-        let boxes = || facets.iter().map(|(_, bounds)| *bounds);
+    /// Groups with the boxes around them.
+    fn in_bins(groups: &[(Group, Bounds)]) -> Form {
+        let boxes = || groups.iter().map(|(_, bounds)| *bounds);
         let low = boxes().fold(Vec2::INFINITY, |low, [it, _]| low.min(it));
         let high = boxes().fold(Vec2::NEG_INFINITY, |high, [_, it]| high.max(it));
-        let scale = SIDE as f32 / (high - low).max(Vec2::splat(1e-6));
-        let mut bins: Vec<Vec<u16>> = vec![vec![]; SIDE * SIDE];
-        for (index, [from, to]) in boxes().enumerate() {
-            let [from, to] = [from, to].map(|corner| {
-                let bin = ((corner - low) * scale).floor().max(Vec2::ZERO);
-                bin.as_uvec2().min(glam::UVec2::splat(SIDE as u32 - 1))
-            });
-            for (y, x) in (from.y..=to.y).flat_map(|y| (from.x..=to.x).map(move |x| (y, x))) {
-                bins[y as usize * SIDE + x as usize].push(index as u16);
-            }
+        let side = (2 * groups.len()).isqrt().clamp(1, 64) as u32;
+        let scale = side as f32 / (high - low).max(Vec2::splat(1e-6));
+        let bins_of = |bounds: Bounds| {
+            let [from, to] = bounds.map(|corner| bin((corner - low) * scale, side));
+            (from.y..=to.y).flat_map(move |y| (from.x..=to.x).map(move |x| (y * side + x) as usize))
+        };
+        let mut starts = vec![0; (side * side) as usize + 1];
+        boxes().flat_map(bins_of).for_each(|bin| starts[bin] += 1);
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
         }
-        let mut starts = vec![0];
-        for bin in &bins {
-            starts.push(starts[starts.len() - 1] + bin.len() as u32);
+        // Backwards, so that each bin's groups end up in order and its start where they begin.
+        let mut list = vec![0; sum as usize];
+        for (index, bounds) in boxes().enumerate().rev() {
+            for bin in bins_of(bounds) {
+                starts[bin] -= 1;
+                list[starts[bin] as usize] = index as u16;
+            }
         }
         Form {
             low,
+            side,
             scale,
             starts,
-            list: bins.concat(),
-            facets: facets.iter().map(|(facet, _)| *facet).collect(),
+            list,
+            groups: groups.iter().map(|(group, _)| *group).collect(),
         }
     }
 
     /// The height of the surface at a point, if it is there: the highest, where it overhangs.
-    #[inline]
     pub(super) fn height(&self, point: Vec2) -> Option<f32> {
-        let bin = (point - self.low) * self.scale;
-        if !(bin.cmpge(Vec2::ZERO).all() && bin.cmple(Vec2::splat(SIDE as f32)).all()) {
+        let at = (point - self.low) * self.scale;
+        if !(at.cmpge(Vec2::ZERO).all() && at.cmple(Vec2::splat(self.side as f32)).all()) {
             return None;
         }
-        let bin = bin.as_uvec2().min(glam::UVec2::splat(SIDE as u32 - 1));
-        let bin = bin.y as usize * SIDE + bin.x as usize;
+        let bin = bin(at, self.side);
+        let bin = (bin.y * self.side + bin.x) as usize;
         let range = self.starts[bin] as usize..self.starts[bin + 1] as usize;
-        let heights = self.list[range]
+        let height = self.list[range]
             .iter()
-            .filter_map(|facet| self.facets[usize::from(*facet)].height(point));
-        heights.reduce(f32::max)
+            .fold(f32::NEG_INFINITY, |highest, group| {
+                self.groups[usize::from(*group)].height(point, highest)
+            });
+        (height > f32::NEG_INFINITY).then_some(height)
     }
+}
+
+/// The bin at a place in widths of bins from the first corner.
+#[inline]
+fn bin(at: Vec2, side: u32) -> UVec2 {
+    at.as_uvec2().min(UVec2::splat(side - 1))
 }
 
 /// The slopes along x and y of a surface with two tangents; `None` where it stands steep.
@@ -130,14 +164,40 @@ fn slope(tangents: &[Vec<f64>; 2], corners: &[DVec3]) -> Option<[f64; 2]> {
     (normal.z > STEEP).then(|| [-normal.x / normal.z, -normal.y / normal.z])
 }
 
-/// A triangle and the box around it, unless it is seen from below or from the side.
-fn facet(corners: [DVec3; 3], slopes: [Option<[f64; 2]>; 3]) -> Option<(Facet, [Vec2; 2])> {
-    let [a, b, c] = corners;
-    let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
-    let area = ab.perp_dot(ac);
-    if area <= 1e-9 * ab.length_squared().max(ac.length_squared()) {
-        return None;
+/// Up to four triangles, with the slopes at their corners, and the box around those that are seen from above, if any are.
+fn group(
+    triangles: impl Iterator<Item = ([DVec3; 3], [Option<[f64; 2]>; 3])>,
+) -> Option<(Group, Bounds)> {
+    let mut group = Group {
+        origins: [Vec4::NAN; 2],
+        shares: [[Vec4::ZERO; 2]; 2],
+        facets: [Facet::default(); 4],
+    };
+    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    for (lane, (corners, slopes)) in triangles.enumerate() {
+        let [a, b, c] = corners;
+        let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
+        let area = ab.perp_dot(ac);
+        if area <= 1e-9 * ab.length_squared().max(ac.length_squared()) {
+            continue;
+        }
+        let shares = [-ac.perp() / area, ab.perp() / area];
+        for axis in 0..2 {
+            group.origins[axis][lane] = a[axis] as f32;
+            for (to, share) in group.shares.iter_mut().zip(shares) {
+                to[axis][lane] = share[axis] as f32;
+            }
+        }
+        group.facets[lane] = facet(corners, slopes);
+        for corner in corners.map(|corner| corner.truncate().as_vec2()) {
+            (low, high) = (low.min(corner), high.max(corner));
+        }
     }
+    low.is_finite().then_some((group, [low, high]))
+}
+
+/// The surface over a triangle with these slopes at its corners.
+fn facet(corners: [DVec3; 3], slopes: [Option<[f64; 2]>; 3]) -> Facet {
     let bend = |from: usize, to: usize| {
         let way = corners[to] - corners[from];
         // Along an edge both its triangles are the same, so it takes both ends.
@@ -147,16 +207,10 @@ fn facet(corners: [DVec3; 3], slopes: [Option<[f64; 2]>; 3]) -> Option<(Facet, [
         }
     };
     let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
-    let facet = Facet {
-        origin: a.truncate().as_vec2(),
-        shares: [-ac.perp() / area, ab.perp() / area].map(|share| share.as_vec2()),
+    Facet {
         heights: corners.map(|corner| corner.z as f32),
         bends: pairs.map(|(from, to)| bend(from, to)),
-    };
-    let flat = corners.map(|corner| corner.truncate().as_vec2());
-    let low = flat[0].min(flat[1]).min(flat[2]);
-    let high = flat[0].max(flat[1]).max(flat[2]);
-    Some((facet, [low, high]))
+    }
 }
 
 #[cfg(test)]

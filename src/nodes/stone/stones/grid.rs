@@ -85,13 +85,17 @@ impl Grid {
             Some(period) => at - period * (at / period).floor(),
             None => at,
         };
-        let bin = self.bin(at);
+        let place = (at - self.low) * self.scale;
+        if place.cmplt(DVec2::ZERO).any() {
+            return &[];
+        }
+        let bin = place.as_ivec2();
         let bin = match self.period {
             // Rounding may lead to the period itself.
             Some(_) => bin.min(self.count - 1),
             None => bin,
         };
-        if bin.cmplt(IVec2::ZERO).any() || bin.cmpge(self.count).any() {
+        if bin.cmpge(self.count).any() {
             return &[];
         }
         let bin = bin.y as usize * self.count.x as usize + bin.x as usize;

@@ -4,7 +4,7 @@ use super::cage::Cage;
 use super::depth::{Outline, Outlines};
 use super::form::Form;
 use super::grid::Grid;
-use super::top::{Found, Part, Pixel, Top};
+use super::top::{Found, Nearest, Part, Pixel, Seen, Top};
 use crate::key::{Key, KeyHasher};
 use glam::{DVec2, DVec3, Vec2};
 use std::collections::BTreeMap;
@@ -103,18 +103,16 @@ impl Ground {
     #[inline]
     pub(super) fn find(&self, at: DVec2, pixel: &Pixel, hand: &mut Hand) -> Found {
         let mut top = Top::default();
-        let (mut nearest, mut depth) = (None, -self.grid.reach);
+        let mut nearest = Nearest::new(-self.grid.reach);
         for near in self.grid.near(at) {
             let stone = &self.stones[*near as usize];
             let point = self.grid.apart(at, stone.centre).as_vec2();
             let outside = (stone.low - point).max(point - stone.high).max_element();
-            if outside >= (0.5 * pixel.width).max(-depth) {
+            if outside >= (0.5 * pixel.width).max(pixel.width - nearest.depth()) {
                 continue;
             }
             let inside = self.outlines.depth(&stone.outline, point);
-            if inside > depth {
-                (nearest, depth) = (Some(*near), inside);
-            }
+            nearest.add(*near, inside);
             let part = match stone.corners.is_empty() {
                 true => stone.sett(inside, point, pixel.width),
                 false => self.cut(*near, inside, point, pixel, hand),
@@ -123,22 +121,35 @@ impl Ground {
                 top.add(*near, inside, part);
             }
         }
-        top.found(nearest, depth)
+        top.found(&nearest, pixel.width)
     }
 
     /// What is seen of a prism, or of what is cut of it: at one point, or where it may end at four.
     #[inline]
     fn cut(&self, number: u32, depth: f32, point: Vec2, pixel: &Pixel, hand: &mut Hand) -> Part {
         let stone = &self.stones[number as usize];
-        let form = self.form(number, hand);
-        let at = |point: Vec2| Some(stone.settled(form.height(point)?, point));
-        let middle = form.height(point);
-        let is_whole = depth > stone.moved + 0.7 * pixel.width
-            && middle.is_some_and(|height| height > stone.flat);
-        if pixel.width == 0.0 || is_whole {
-            return Part::of([middle.map(|height| stone.settled(height, point))]);
+        let doubtful = stone.moved + 0.7 * pixel.width;
+        if depth < -doubtful {
+            return Part::default();
         }
-        Part::of(pixel.points.map(|offset| at(point + offset)))
+        let form = self.form(number, hand);
+        let mut seen = Seen::default();
+        let is_inside = depth > doubtful;
+        if pixel.width == 0.0 || is_inside {
+            let middle = form.height(point);
+            if pixel.width == 0.0 || middle.is_some_and(|height| height > stone.flat) {
+                seen.add(middle.map(|height| stone.settled(height, point)));
+                return seen.part();
+            }
+        }
+        for offset in pixel.points {
+            let point = point + offset;
+            seen.add(
+                form.height(point)
+                    .map(|height| stone.settled(height, point)),
+            );
+        }
+        seen.part()
     }
 
     /// The form of a stone, from the hand, from those that are kept, or made anew.

@@ -56,23 +56,96 @@ pub(super) struct Part {
     pub(super) cover: f32,
 }
 
-impl Part {
-    /// From the heights at some points; none where the stone is not.
-    #[inline]
-    pub(super) fn of<const POINTS: usize>(heights: [Option<f32>; POINTS]) -> Part {
-        let (mut sum, mut count) = (0.0, 0.0);
-        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-        for height in heights.into_iter().flatten() {
-            (sum, count) = (sum + height, count + 1.0);
-            (low, high) = (low.min(height), high.max(height));
+/// What some points of a pixel see of one stone.
+#[derive(Debug)]
+pub(super) struct Seen {
+    points: f32,
+    count: f32,
+    sum: f32,
+    low: f32,
+    high: f32,
+}
+
+impl Default for Seen {
+    fn default() -> Seen {
+        Seen {
+            points: 0.0,
+            count: 0.0,
+            sum: 0.0,
+            low: f32::INFINITY,
+            high: f32::NEG_INFINITY,
         }
-        if count == 0.0 {
+    }
+}
+
+impl Seen {
+    /// Adds a point with the stone's height there; none where the stone is not.
+    #[inline]
+    pub(super) fn add(&mut self, height: Option<f32>) {
+        self.points += 1.0;
+        if let Some(height) = height {
+            self.count += 1.0;
+            self.sum += height;
+            self.low = self.low.min(height);
+            self.high = self.high.max(height);
+        }
+    }
+
+    #[inline]
+    pub(super) fn part(&self) -> Part {
+        if self.count == 0.0 {
             return Part::default();
         }
         Part {
-            height: sum / count,
-            range: high - low,
-            cover: count / POINTS as f32,
+            height: self.sum / self.count,
+            range: self.high - self.low,
+            cover: self.count / self.points,
+        }
+    }
+}
+
+/// The two stones whose outlines are nearest to the middle of a pixel, each with its depth; at first none, as far away as
+/// stones are known of.
+#[derive(Debug)]
+pub(super) struct Nearest([(Option<u32>, f32); 2]);
+
+impl Nearest {
+    pub(super) fn new(depth: f32) -> Nearest {
+        Nearest([(None, depth); 2])
+    }
+
+    #[inline]
+    pub(super) fn depth(&self) -> f32 {
+        self.0[0].1
+    }
+
+    #[inline]
+    pub(super) fn add(&mut self, stone: u32, depth: f32) {
+        let [first, second] = self.0;
+        if depth > first.1 {
+            self.0 = [(Some(stone), depth), first];
+        } else if depth > second.1 {
+            self.0[1] = (Some(stone), depth);
+        }
+    }
+
+    /// What is found in a joint: the nearest stone, and the share of the pixel that is nearer to the other. Between two
+    /// stones that face each other the difference of their depths changes by two widths of the pixel within it.
+    #[inline]
+    fn found(&self, width: f32) -> Found {
+        let [(stone, depth), (other, beyond)] = self.0;
+        let share = match width > 0.0 {
+            true => (0.5 - 0.5 * (depth - beyond) / width).max(0.0),
+            false => 0.0,
+        };
+        Found {
+            height: 0.0,
+            range: 0.0,
+            cover: 0.0,
+            depth,
+            stone,
+            other,
+            share,
         }
     }
 }
@@ -100,19 +173,11 @@ impl Top {
         }
     }
 
-    /// What is found, with the nearest stone and its depth for where there is none.
+    /// What is found in a pixel, with the nearest stones for where it is a joint.
     #[inline]
-    pub(super) fn found(self, nearest: Option<u32>, depth: f32) -> Found {
+    pub(super) fn found(self, nearest: &Nearest, width: f32) -> Found {
         let Some((stone, inside, part)) = self.first else {
-            return Found {
-                height: 0.0,
-                range: 0.0,
-                cover: 0.0,
-                depth,
-                stone: nearest,
-                other: None,
-                share: 0.0,
-            };
+            return nearest.found(width);
         };
         let alone = Found {
             height: part.height,
