@@ -45,6 +45,7 @@ impl Dynamics<'_> {
         let mut speeds = vec![DVec2::ZERO; stones.len()];
         let mut forces = speeds.clone();
         let mut neighbours = Neighbours::default();
+        let mut images = vec![];
         let mut moved = f64::INFINITY;
         let size = self.stone.max_element();
         let smallest = stones
@@ -65,8 +66,8 @@ impl Dynamics<'_> {
                 neighbours = self.neighbours(stones);
                 moved = 0.0;
             }
-            let sources = sources(stones, &neighbours);
-            self.forces(stones, &neighbours, &sources, &mut forces);
+            place_images(&mut images, stones, &neighbours);
+            self.forces(stones, &neighbours, &images, &mut forces);
             let mut largest: f64 = 0.0;
             let mut fastest: f64 = 0.0;
             for ((stone, speed), force) in stones.iter_mut().zip(&mut speeds).zip(&forces) {
@@ -113,7 +114,7 @@ impl Dynamics<'_> {
         &self,
         stones: &[Stone],
         neighbours: &Neighbours,
-        sources: &[Stone],
+        images: &[Stone],
         forces: &mut [DVec2],
     ) {
         let inverse = 1.0 / self.stone;
@@ -121,7 +122,11 @@ impl Dynamics<'_> {
             let stone = &stones[index];
             let mut sum = DVec2::ZERO;
             for source in neighbours.of(index) {
-                let other = &sources[*source as usize];
+                let source = *source as usize;
+                let other = match source.checked_sub(stones.len()) {
+                    Some(image) => &images[image],
+                    None => &stones[source],
+                };
                 let scale = 0.5 * (stone.scale + other.scale);
                 let within = other.within(stone.point - other.point) * inverse / scale;
                 if within.length_squared() < REACH * REACH {
@@ -142,13 +147,16 @@ impl Dynamics<'_> {
     }
 }
 
-/// All that forces come from, images of neighbouring periods too.
-fn sources(stones: &[Stone], neighbours: &Neighbours) -> Vec<Stone> {
-    let sources = neighbours.sources.iter();
-    let source = |(index, by): &(u32, DVec2)| {
-        let stone = stones[*index as usize];
-        let point = stone.point + *by;
-        Stone { point, ..stone }
-    };
-    sources.map(source).collect()
+/// Where the particles of neighbouring periods are, which stand behind the particles themselves in `neighbours`.
+fn place_images(images: &mut Vec<Stone>, stones: &[Stone], neighbours: &Neighbours) {
+    images.clear();
+    images.extend(
+        neighbours.sources[stones.len()..]
+            .iter()
+            .map(|(index, by)| {
+                let stone = stones[*index as usize];
+                let point = stone.point + *by;
+                Stone { point, ..stone }
+            }),
+    );
 }
