@@ -286,3 +286,38 @@ fn mistakes_are_named() {
         assert!(wrong.contains(said), "{said}: {wrong}");
     }
 }
+
+#[test]
+fn angles_are_in_degrees() {
+    let nodes = format!(
+        r#"{LAID} "it": direction_field(angle: 30), "turned": direction_field(angle: "cell.angle", symmetry: 1),"#
+    );
+    let names = ["it.direction", "cell.angle", "turned.direction"];
+    let found = sampled(&nodes, &names, &grid(30, 300.0));
+    let mut seen = std::collections::BTreeSet::new();
+    for index in 0..900 {
+        let [x, y] = [0, 1].map(|part| found[0][part][index]);
+        assert!((x - 0.75f32.sqrt()).abs() < 1e-5 && (y - 0.5).abs() < 1e-5);
+        let angle = found[1][0][index];
+        seen.insert(angle.round() as i32);
+        let (sine, cosine) = libm::sincosf(angle.to_radians());
+        let [x, y] = [0, 1].map(|part| found[2][part][index]);
+        assert!((x - cosine).abs() < 1e-5 && (y - sine).abs() < 1e-5);
+    }
+    // Bricks of a herringbone that is turned by 30 degrees lie along it and across.
+    assert!(
+        seen.iter().all(|angle| angle.rem_euclid(90) == 30),
+        "{seen:?}"
+    );
+    assert!(seen.len() > 1);
+}
+
+#[test]
+fn what_is_let_into_stones_lies_at_their_level() {
+    let nodes = r##""ground": material(base_color: "#808080", height: 70), "of": material(base_color: "#404040"),
+        "disc": region_shape(shape: ellipse, size: (40, 40), at: (30, 30)),
+        "it": inlay(ground: "ground", of: "of", region: "disc", gap: 4, depth: 2, step: 1, level: 70, chamfer: 0, ground_chamfer: 0),"##;
+    let points = [[10.0, 50.0], [30.0, 50.0], [50.0, 50.0]];
+    let found = sampled(nodes, &["it.height"], &points);
+    assert_eq!(found[0][0], [70.0, 68.0, 71.0]);
+}

@@ -185,6 +185,29 @@ impl<'a> Inputs<'a> {
         self.ledger.warn(message.into());
     }
 
+    /// The values of the field in input `name` at points of the plane in mm, column by column, as [`Build::sample`] gives them.
+    ///
+    /// # Errors
+    /// If one of them is not finite, or the run was cancelled.
+    pub fn sample(
+        &self,
+        name: &'static str,
+        build: &Build<'_>,
+        points: &[DVec2],
+    ) -> Result<Vec<Vec<f32>>, Failure> {
+        let columns = build.sample(&self.field(name), points)?;
+        for (point, value) in columns.iter().flat_map(|column| points.iter().zip(column)) {
+            if !value.is_finite() {
+                let [x, y] = point.to_array();
+                let message =
+                    format!("expected finite numbers, found {value} at ({x:.3}, {y:.3}) mm");
+                return Err(Failure::of_input(name, message)
+                    .with_hint("look for a division by 0 in what is linked here"));
+            }
+        }
+        Ok(columns)
+    }
+
     /// Takes memory for what is decoded from the file of input `input`: to be asked before decoding.
     ///
     /// # Errors

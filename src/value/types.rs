@@ -14,7 +14,7 @@ pub enum Unit {
     Year,
     /// Speed of growth.
     MillimetrePerYear,
-    /// Angle; degrees in files, radians in code.
+    /// Angle in degrees.
     Degree,
     /// Size of a picture.
     Pixel,

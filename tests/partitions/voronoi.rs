@@ -147,6 +147,19 @@ fn borders_of_power_cells_have_equal_tangents() {
 }
 
 #[test]
+fn large_weights_leave_the_borders_where_they_are() {
+    let seeds = [(1.0, 1.0), (5.0, 5.0), (8.0, 2.0)];
+    let plain = split(given(points(&seeds), (10.0, 10.0))).unwrap();
+    let mut inputs = given(points(&seeds), (10.0, 10.0));
+    inputs.push(("radii", Value::List(vec![Value::Number(1e9); 3])));
+    let heavy = split(inputs).unwrap();
+    assert_tiles(&heavy, 100.0);
+    for (a, b) in plain.areas.iter().zip(&heavy.areas) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+}
+
+#[test]
 fn equal_weights_change_nothing_and_hidden_seeds_have_no_cell() {
     let size = (30.0, 20.0);
     let seeds = anywhere(300, size);

@@ -205,3 +205,22 @@ fn every_stone_has_one_record_of_the_table() {
             .all(|(colour, record)| *colour == 1.0 - record)
     );
 }
+
+#[test]
+fn no_stone_stands_on_its_side_and_no_rim_takes_all_of_it() {
+    let steep = sampled(
+        "columns: 6, rows: 6",
+        "height: 60, tilt: 30, joint: 4, unevenness: 0, seed: 3",
+        "height",
+        &lattice(),
+    );
+    // A quad of 100 mm that leans by 45 degrees both ways has corners 50 and 50 higher than its middle.
+    assert!(steep.iter().all(|height| *height < 60.0 + 115.0));
+    let round = sampled(
+        "columns: 6, rows: 6",
+        "height: 60, rounding: 500, tilt: 0, unevenness: 0",
+        "height",
+        &lattice(),
+    );
+    assert!(round.iter().any(|height| *height > 55.0));
+}

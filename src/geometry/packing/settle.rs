@@ -46,6 +46,7 @@ impl Dynamics<'_> {
         let mut forces = speeds.clone();
         let mut neighbours = Neighbours::default();
         let mut images = vec![];
+        let mut listed: Vec<DVec2> = vec![];
         let mut moved = f64::INFINITY;
         let size = self.stone.max_element();
         let smallest = stones
@@ -57,28 +58,29 @@ impl Dynamics<'_> {
             if step % TURNED == 0 {
                 self.turn(stones);
             }
-            if moved > 0.5 * SKIN * smallest * self.stone.min_element() {
+            let slack = 0.5 * SKIN * smallest * self.stone.min_element();
+            if moved > slack * slack {
                 if let Some(period) = self.period {
                     stones
                         .iter_mut()
                         .for_each(|stone| stone.point = stone.point.rem_euclid(period));
                 }
                 neighbours = self.neighbours(stones);
+                listed = stones.iter().map(|stone| stone.point).collect();
                 moved = 0.0;
             }
             place_images(&mut images, stones, &neighbours);
             self.forces(stones, &neighbours, &images, &mut forces);
             let mut largest: f64 = 0.0;
-            let mut fastest: f64 = 0.0;
-            for ((stone, speed), force) in stones.iter_mut().zip(&mut speeds).zip(&forces) {
+            let moving = stones.iter_mut().zip(&mut speeds).zip(&listed);
+            for (((stone, speed), listed), force) in moving.zip(&forces) {
                 if !stone.is_fixed {
                     *speed = (*speed + STEP * *force) / (1.0 + STEP * DAMPING);
                     stone.point += STEP * *speed;
                     largest = largest.max(force.length_squared());
-                    fastest = fastest.max(speed.length_squared());
+                    moved = moved.max(stone.point.distance_squared(*listed));
                 }
             }
-            moved += STEP * fastest.sqrt();
             if largest < (AT_REST * size) * (AT_REST * size) {
                 break;
             }

@@ -125,7 +125,7 @@ impl Grid {
                 if aside.abs().max_element() >= SAME {
                     cell.cut(
                         aside,
-                        0.5 * (aside.length_squared() + own.weight - site.weight),
+                        0.5 * (aside.length_squared() + (own.weight - site.weight)),
                     );
                 } else if is_before(site, &own) {
                     cell.corners.clear();

@@ -17,7 +17,7 @@ use glam::DVec2;
 /// A direction at every point.
 pub static KIND: Kind = Kind {
     name: "direction_field",
-    version: 1,
+    version: 2,
     about: "A direction at every point: along the border of a region, along curves, or as a field says; for stones, \
             boards and strokes to follow.",
     source: "Miyata, Itoh & Shimada, eq. (1), with angles multiplied by the symmetry: as printed, opposite sides cancel",
@@ -111,7 +111,8 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let drawn = drawn(inputs, build)?;
     if directions.is_empty() && drawn.is_none() {
         let failure = Failure::new("nothing says where the direction comes from");
-        return Err(failure.with_hint("link a `region`, list `guides`, or give `along` or `angle`"));
+        let hint = "link a `region`, list `guides` of some length, or give `along` or `angle`";
+        return Err(failure.with_hint(hint));
     }
     let amount = match drawn {
         Some(_) => inputs.field("amount"),
@@ -192,7 +193,7 @@ impl Kernel for Pointed {
 
     fn evaluate(&self, block: &mut Block<'_>) {
         for (index, angle) in block.inputs[0].values.iter().enumerate() {
-            let (sine, cosine) = libm::sincos(f64::from(*angle));
+            let (sine, cosine) = libm::sincos(f64::from(*angle).to_radians());
             block.outputs[0][index] = cosine as f32;
             block.outputs[1][index] = sine as f32;
             block.outputs[2][index] = 0.0;

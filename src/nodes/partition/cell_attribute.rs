@@ -44,13 +44,42 @@ const PARTS: &[Input] = &[
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let name = inputs.text("name");
-    if name.is_empty() {
-        return Err(Failure::of_input("name", "the name is empty"));
-    }
+    check(name)?;
     let mut cells = Partition::clone(inputs.partition("of"));
     let numbers = numbers(inputs, build, &cells)?;
     cells.attributes.insert(name.to_owned(), numbers);
     Ok(vec![Value::Partition(Arc::new(cells))])
+}
+
+/// What materials and tables know of cells under these names.
+const TAKEN: [&str; 10] = [
+    "id",
+    "random",
+    "area",
+    "centre",
+    "extent",
+    "x_mm",
+    "y_mm",
+    "area_mm2",
+    "corners",
+    "axis_degree",
+];
+
+fn check(name: &str) -> Result<(), Failure> {
+    let refuse = |message: String| Failure::of_input("name", message);
+    if name.is_empty() {
+        return Err(refuse("the name is empty".to_owned()));
+    }
+    if name.chars().any(char::is_control) {
+        return Err(refuse(format!(
+            "expected a name in one line, found {name:?}"
+        )));
+    }
+    if TAKEN.contains(&name) {
+        let failure = refuse(format!("cells have a `{name}` already"));
+        return Err(failure.with_hint("give the number another name"));
+    }
+    Ok(())
 }
 
 fn numbers(inputs: &Inputs<'_>, build: &Build<'_>, cells: &Partition) -> Result<Vec<f64>, Failure> {
@@ -59,7 +88,7 @@ fn numbers(inputs: &Inputs<'_>, build: &Build<'_>, cells: &Partition) -> Result<
     let stated = ["value", "random", "choice"].map(|name| inputs.get(name).is_some());
     match stated {
         [true, false, false] => {
-            let values = build.sample(&inputs.field("value"), &cells.centres)?;
+            let values = inputs.sample("value", build, &cells.centres)?;
             Ok(values[0].iter().map(|value| f64::from(*value)).collect())
         }
         [false, true, false] => {

@@ -14,7 +14,7 @@ use crate::value::{Domain, Partition, Type, Unit, Value};
 /// Samples a partition.
 pub static KIND: Kind = Kind {
     name: "cell_fields",
-    version: 1,
+    version: 2,
     about: "What a partition says at each point: the cell's id, the distance to its border, where in the cell the point \
             is, a random number for each cell, an attribute.",
     source: "own construction; distances to segments and arcs, the cell by crossings (Shimrat 1962)",

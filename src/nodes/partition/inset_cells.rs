@@ -114,7 +114,7 @@ fn offs(inputs: &Inputs<'_>, build: &Build<'_>, cells: &Partition) -> Result<Vec
             .period
             .map_or(middle, |period| middle - (middle / period).floor() * period)
     });
-    let widths = build.sample(&inputs.field("joint"), &middles.collect::<Vec<_>>())?;
+    let widths = inputs.sample("joint", build, &middles.collect::<Vec<_>>())?;
     let random = Random::new(build.seed, "inset_cells joint", inputs.whole("seed"));
     let (vary, by_cell) = (inputs.pair("vary"), inputs.choice("each") == "cell");
     let border = inputs.get("border").map(|_| inputs.number("border"));

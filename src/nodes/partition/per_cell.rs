@@ -136,7 +136,7 @@ const PLACE: u64 = 2;
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let partition = inputs.partition("cells");
-    let materials = materials(inputs);
+    let materials = materials(inputs)?;
     let found = Found::new(build, partition);
     let seed = seed(build.seed, inputs.whole("seed"));
     let choice = choice(inputs, build, &found, &materials, seed)?;
@@ -174,14 +174,19 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 }
 
 /// The materials by their names, in the order of the recipe.
-fn materials<'i>(inputs: &'i Inputs<'_>) -> Vec<(&'i str, &'i Arc<Material>)> {
+fn materials<'i>(inputs: &'i Inputs<'_>) -> Result<Vec<(&'i str, &'i Arc<Material>)>, Failure> {
     let listed = inputs.channels("of").iter();
-    listed
+    let materials: Vec<_> = listed
         .filter_map(|(name, value)| match value {
             Value::Material(material) => Some((name.as_str(), material)),
             _ => None,
         })
-        .collect()
+        .collect();
+    if materials.is_empty() {
+        let failure = Failure::of_input("of", "expected one material or more, found none");
+        return Err(failure.with_hint("name them, as in `of: {\"oak\": \"oak\"}`"));
+    }
+    Ok(materials)
 }
 
 /// Which of the materials each cell has.
@@ -198,6 +203,7 @@ fn choice(
             let message = "`weights` are stated, but `choose` says which material a cell has";
             return Err(Failure::of_input("weights", message).with_hint("remove one of them"));
         }
+        warn_of_numbers(inputs, build, last)?;
         let centre = found.quantity(build, Quantity::Centre);
         let number = inputs.field("choose").at(&centre);
         return Ok(build.kernel(Chosen { last }, vec![number, found.index()]));
@@ -208,6 +214,19 @@ fn choice(
             .with_hint("give one of them a weight of 1")
     })?;
     Ok(build.kernel(drawn, vec![random]))
+}
+
+/// Warns of cells whose number is not that of a material.
+fn warn_of_numbers(inputs: &Inputs<'_>, build: &Build<'_>, last: usize) -> Result<(), Failure> {
+    let numbers = inputs.sample("choose", build, &inputs.partition("cells").centres)?;
+    let is_beyond = |number: &&f32| **number < -0.5 || **number >= last as f32 + 0.5;
+    let count = numbers[0].iter().filter(is_beyond).count();
+    if count > 0 {
+        inputs.warn(format!(
+            "`choose` gives {count} cells a number that is not from 0 to {last}; they have the nearest material"
+        ));
+    }
+    Ok(())
 }
 
 /// The weight of each material.

@@ -4,8 +4,8 @@
 //!
 //! ```text
 //! d < -g/2          the ground
-//! -g/2 < d < g/2    the glue, `depth` below the ground
-//! g/2 < d           what is let in, `step` above the ground
+//! -g/2 < d < g/2    the glue, `depth` below the level of the ground
+//! g/2 < d           what is let in, `step` above that level
 //! ```
 //!
 //! Both edges of the gap are chamfered at 45 degrees. The glue lies in the shade: at the bottom of a groove of width g and
@@ -20,14 +20,14 @@ use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::partition::found::Found;
 use crate::nodes::partition::region_cells::cells;
-use crate::value::{Domain, Material, Surface, Type, Unit, Value};
+use crate::value::{Domain, Material, Partition, Surface, Type, Unit, Value};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Lets a material into another.
 pub static KIND: Kind = Kind {
     name: "inlay",
-    version: 1,
+    version: 2,
     about: "Lets one flat material into another, inside a region or the cells of a partition: with a gap, a glue line, a \
             step in height and chamfered edges, in all channels alike.",
     source: "own construction: a profile of the distance to the outline; shade of a groove after Lambert's cosine law",
@@ -61,17 +61,24 @@ pub static KIND: Kind = Kind {
         Input::number(
             "depth",
             Unit::Millimetre,
-            "How far the glue lies below the ground.",
+            "How far the glue lies below `level`.",
         )
         .default("0.1")
         .range(0.0, 1e5),
         Input::number(
             "step",
             Unit::Millimetre,
-            "How far what is let in stands above the ground; below 0 it is sunk.",
+            "How far what is let in stands above `level`; below 0 it is sunk.",
         )
         .default("0")
         .range(-1e5, 1e5),
+        Input::number(
+            "level",
+            Unit::Millimetre,
+            "Height of the ground's face in its own material: of stones their height, of boards mostly 0.",
+        )
+        .default("0")
+        .range(-1e6, 1e6),
         Input::number(
             "chamfer",
             Unit::Millimetre,
@@ -145,7 +152,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
             "base_color" => Some(inputs.field("glue")),
             "roughness" => Some(inputs.field("glue_roughness")),
             "metalness" => Some(Field::constant(0.0)),
-            "height" => Some(Field::constant(-cut.depth)),
+            "height" => Some(Field::constant(cut.level - cut.depth)),
             _ => None,
         };
         if Material::is_direction(&name, &a) {
@@ -189,14 +196,12 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure> {
     let stated = ["region", "cells"].map(|name| inputs.get(name).is_some());
     match stated {
-        [true, false] => {
-            let found = Found::new(build, &Arc::new(cells(inputs.region("region"))));
-            Ok([found.border(), found.index()])
-        }
-        [false, true] => {
-            let found = Found::new(build, inputs.partition("cells"));
-            Ok([found.border(), found.index()])
-        }
+        [true, false] => Ok(of_cells(
+            &Arc::new(cells(inputs.region("region"))),
+            inputs,
+            build,
+        )),
+        [false, true] => Ok(of_cells(inputs.partition("cells"), inputs, build)),
         [true, true] => {
             let message = "both a `region` and `cells` are stated";
             Err(Failure::of_input("region", message).with_hint("keep one of them"))
@@ -206,4 +211,21 @@ fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure
             Err(failure.with_hint("link a `region`, or the `cells` of a partition"))
         }
     }
+}
+
+/// The distance to the border, and which cell is at a point. Warns if all of them are beside the ground.
+fn of_cells(cells: &Arc<Partition>, inputs: &Inputs<'_>, build: &Build<'_>) -> [Field; 2] {
+    let is_beside = |[width, height]: [f64; 2]| {
+        let beside = |cell: usize| {
+            let [low, high] = cells.box_of(cell);
+            high.min_element() <= 0.0 || low.x >= width || low.y >= height
+        };
+        cells.period.is_none() && (0..cells.len()).all(beside)
+    };
+    if inputs.material("ground").size.is_some_and(is_beside) {
+        inputs
+            .warn("nothing is let in: the outline lies beside the ground, which begins at (0, 0)");
+    }
+    let found = Found::new(build, cells);
+    [found.border(), found.index()]
 }

@@ -15,7 +15,7 @@ pub(in crate::nodes) enum Quantity {
     Random(u64),
     /// Its centre in mm.
     Centre,
-    /// The angle of its first axis in radians.
+    /// The angle of its first axis in degrees.
     Angle,
     /// Width and height of the box around it along its own axes, in mm.
     Extent,
@@ -81,7 +81,7 @@ impl LookUp {
             Quantity::Centre => two(partition.centres[cell]),
             Quantity::Angle => {
                 let frame = partition.frames[cell];
-                one(libm::atan2(frame.y, frame.x))
+                one(libm::atan2(frame.y, frame.x).to_degrees())
             }
             Quantity::Extent => {
                 let [low, high] = along_axes();
@@ -99,7 +99,7 @@ impl LookUp {
 
 impl Kernel for LookUp {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("quantity of cell").whole(1).key(self.key);
+        key.text("quantity of cell").whole(2).key(self.key);
         self.quantity.add_to_key(key);
     }
 

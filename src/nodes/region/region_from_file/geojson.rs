@@ -61,8 +61,26 @@ pub(super) fn read(
     project(contents.found)
 }
 
+/// Moves what lies west of the meridian of 180 degrees to the east, if the areas then are nearer together.
+fn join_at_antimeridian(found: &mut [Found]) {
+    let span = |found: &[Found], west: f64| {
+        let corners = found.iter().flat_map(|found| found.rings.iter().flatten());
+        let longitudes = corners.map(|at| at.x + if at.x < 0.0 { west } else { 0.0 });
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let (low, high) = longitudes.fold(ends, |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    };
+    if span(found, 360.0) < span(found, 0.0) {
+        let corners = found
+            .iter_mut()
+            .flat_map(|found| found.rings.iter_mut().flatten());
+        corners.filter(|at| at.x < 0.0).for_each(|at| at.x += 360.0);
+    }
+}
+
 /// Degrees to mm.
-fn project(found: Vec<Found>) -> Result<Vec<Drawn>, Failure> {
+fn project(mut found: Vec<Found>) -> Result<Vec<Drawn>, Failure> {
+    join_at_antimeridian(&mut found);
     let corners = || {
         found
             .iter()

@@ -71,6 +71,9 @@ impl Manner {
 /// The share of its height above which a rounded stone goes on to all sides.
 const ROUNDED: f64 = 0.75;
 
+/// No stone leans by more along x or y, in radians: 45 degrees.
+const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
+
 /// Stones between two questions whether to go on.
 const AT_ONCE: usize = 4096;
 
@@ -169,8 +172,8 @@ impl Grounds {
                 [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y]
                     .map(|way| *centre + way * *quarter)
             });
-        let mut settled = build.sample(&inputs.field("settle"), &around.collect::<Vec<_>>())?;
-        let mut wear = build.sample(&inputs.field("wear"), &partition.centres)?;
+        let mut settled = inputs.sample("settle", build, &around.collect::<Vec<_>>())?;
+        let mut wear = inputs.sample("wear", build, &partition.centres)?;
         Ok(Grounds {
             settled: settled.swap_remove(0),
             quarters,
@@ -208,7 +211,8 @@ impl Laying {
             return false;
         };
         let top = at.settled + manner.height + manner.unevenness * normal(random);
-        let lean = [(); 2].map(|()| libm::tan(manner.tilt * normal(random)));
+        let lean =
+            [(); 2].map(|()| libm::tan((manner.tilt * normal(random)).clamp(-STEEPEST, STEEPEST)));
         let moved: Vec<DVec3> = base
             .iter()
             .map(|_| {
@@ -266,6 +270,8 @@ impl Laying {
         stone.half = (1.0 / radius.max(1e-12)) as f32;
         let radius = manner.corner_radius * by_chance;
         self.outline(stone, &corners, radius);
+        // A rim that is wider than the stone would leave nothing of its height.
+        stone.rim = stone.rim.min(0.5 * (stone.high - stone.low).min_element());
     }
 
     /// Makes it a prism, or what is cut of one.

@@ -10,6 +10,7 @@ use crate::nodes::field::profile::{Ends, Piece, Profile};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut {
     pub(super) gap: f64,
+    pub(super) level: f64,
     pub(super) depth: f64,
     pub(super) step: f64,
     pub(super) chamfer: f64,
@@ -20,6 +21,7 @@ impl Cut {
     pub(super) fn read(inputs: &Inputs<'_>) -> Cut {
         Cut {
             gap: inputs.number("gap"),
+            level: inputs.number("level"),
             depth: inputs.number("depth"),
             step: inputs.number("step"),
             chamfer: inputs.number("chamfer"),
@@ -48,8 +50,12 @@ impl Cut {
         let pieces = [
             (-half - self.ground_chamfer, [0.0, 0.0, 0.0, 1.0], -1.0),
             (-half, [1.0, 0.0, 0.0, self.openness()], 0.0),
-            (half, [0.0, 1.0, self.step - self.chamfer, 1.0], 1.0),
-            (edge, [0.0, 1.0, self.step, 1.0], 0.0),
+            (
+                half,
+                [0.0, 1.0, self.level + self.step - self.chamfer, 1.0],
+                1.0,
+            ),
+            (edge, [0.0, 1.0, self.level + self.step, 1.0], 0.0),
         ];
         let mut all: Vec<Piece<4>> = vec![];
         for (start, values, slope) in pieces {

@@ -1,0 +1,98 @@
+//! What kinds refuse when they are built, each with the words that the author of the recipe reads.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+
+#[path = "support/workshop.rs"]
+#[allow(dead_code, reason = "refusals need no log of events")]
+mod workshop;
+
+use std::sync::{Arc, Mutex};
+use workshop::Workshop;
+use yosegi::engine::{Event, Options};
+
+const NODES: &str = r##"
+    "oak": material(base_color: "#b98d5a"),
+    "cells": split_cells(size: (100, 80), pattern: rows, length: 20, width: 10),
+    "at": position(),
+"##;
+
+/// The errors and the warnings of a recipe whose node `it` is built.
+fn said(node: &str) -> (String, Vec<String>) {
+    let workshop = Workshop::new("/refusals", Options::default());
+    let graph = workshop.graph(&format!("(nodes: {{ {NODES} {node} }})"));
+    let warnings = Arc::new(Mutex::new(vec![]));
+    let heard = Arc::clone(&warnings);
+    let listener = move |event: Event| {
+        if let Event::Warning { message, .. } = event {
+            heard.lock().unwrap().push(message.to_string());
+        }
+    };
+    let built = workshop.engine.fields(&graph, "it", &listener);
+    let wrong = built
+        .err()
+        .map(|wrong| format!("{wrong:?}"))
+        .unwrap_or_default();
+    let warnings = warnings.lock().unwrap().clone();
+    (wrong, warnings)
+}
+
+/// Nodes that are refused, and words of what is said about them.
+const REFUSED: &[(&str, &str)] = &[
+    (
+        r#""it": per_cell(cells: "cells", of: {})"#,
+        "expected one material or more, found none",
+    ),
+    (
+        r#""it": per_cell(cells: "cells", of: {"a": "oak"}, choose: "= 1 mm / (0 * at.u)")"#,
+        "expected finite numbers, found inf at",
+    ),
+    (
+        r#""odd": cell_attribute(of: "cells", name: "tone", value: "= 0 mm / (0 * at.u)"), "it": per_cell(cells: "odd", of: "oak")"#,
+        "expected finite numbers, found",
+    ),
+    (
+        r#""odd": cell_attribute(of: "cells", name: "id", value: 1), "it": per_cell(cells: "odd", of: "oak")"#,
+        "cells have a `id` already",
+    ),
+    (
+        r#""odd": inset_cells(of: "cells", joint: "= 1 mm * 1 mm / (0 * at.u)"), "it": cell_fields(cells: "odd")"#,
+        "expected finite numbers, found inf at",
+    ),
+    (
+        r#""it": stones(cells: "cells", settle: "= 1 mm * 1 mm / (0 * at.u)")"#,
+        "expected finite numbers, found inf at",
+    ),
+    (
+        r#""it": direction_field(guides: [(points: [(3, 3), (3, 3)])])"#,
+        "nothing says where the direction comes from",
+    ),
+];
+
+#[test]
+fn what_cannot_be_built_is_refused_with_reasons() {
+    for (node, expected) in REFUSED {
+        let (wrong, _) = said(node);
+        assert!(wrong.contains(expected), "{node}: {wrong}");
+    }
+}
+
+/// Nodes that are built, and words of what is warned of.
+const WARNED: &[(&str, &str)] = &[
+    (
+        r#""it": per_cell(cells: "cells", of: {"a": "oak", "b": "oak"}, choose: 7)"#,
+        "`choose` gives 44 cells a number that is not from 0 to 1",
+    ),
+    (
+        r#""board": slice_cut(of: "oak", origin: (0, 0, 0), across: (1, 0, 0), along: (0, 0, 1), size: (100, 100)),
+        "far": region_shape(size: (10, 10), at: (300, 0)), "it": inlay(ground: "board", of: "board", region: "far")"#,
+        "nothing is let in: the outline lies beside the ground",
+    ),
+];
+
+#[test]
+fn what_is_likely_a_mistake_is_warned_of() {
+    for (node, expected) in WARNED {
+        let (wrong, warnings) = said(node);
+        assert_eq!(wrong, "", "{node}");
+        assert!(warnings.concat().contains(expected), "{node}: {warnings:?}");
+    }
+}
