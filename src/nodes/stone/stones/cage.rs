@@ -90,10 +90,12 @@ impl Cage {
 
     /// The blend of the corners' values.
     pub(super) fn blend<T: Blend>(weights: &[f64], corners: &[T]) -> T {
-        let terms = weights.iter().zip(corners).filter(|term| *term.0 != 0.0);
-        terms.fold(T::default(), |sum, (weight, corner)| {
-            sum + *corner * *weight
-        })
+        weights
+            .iter()
+            .zip(corners)
+            .fold(T::default(), |sum, (weight, corner)| {
+                sum + *corner * *weight
+            })
     }
 }
 

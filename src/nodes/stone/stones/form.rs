@@ -4,7 +4,7 @@
 //! corners (Bazeley, Cheung, Irons & Zienkiewicz 1965); where the surface stands steep it is straight.
 
 use super::cage::Cage;
-use glam::{DVec3, UVec2, Vec2, Vec4};
+use glam::{DVec2, DVec3, UVec2, Vec2, Vec4};
 
 /// Edges are straight where the surface stands steeper than this, as the upward part of its normal.
 const STEEP: f64 = 0.25;
@@ -85,14 +85,24 @@ impl Form {
             .iter()
             .map(|it| Cage::blend(it, corners))
             .collect();
-        let slopes: Vec<Option<[f64; 2]>> =
-            cage.tangents.iter().map(|it| slope(it, corners)).collect();
-        let slope_of = |index: u32| slopes.get(index as usize).copied().flatten();
+        let corners_of = |it: &[u32; 3]| it.map(|index| points[index as usize]);
+        // Slopes take long, and most of the triangles below are never seen.
+        let mut slopes: Vec<Option<[f64; 2]>> = vec![None; points.len()];
+        let mut is_known = vec![cage.tangents.is_empty(); points.len()];
+        for index in cage
+            .triangles
+            .iter()
+            .filter(|it| is_seen(&corners_of(it)))
+            .flatten()
+        {
+            let index = *index as usize;
+            if !std::mem::replace(&mut is_known[index], true) {
+                slopes[index] = slope(&cage.tangents[index], corners);
+            }
+        }
+        let slopes_of = |it: &[u32; 3]| it.map(|index| slopes[index as usize]);
         let groups = cage.triangles.chunks(4).filter_map(|triangles| {
-            group(triangles.iter().map(|it| {
-                let corners = it.map(|index| points[index as usize]);
-                (corners, it.map(slope_of))
-            }))
+            group(triangles.iter().map(|it| (corners_of(it), slopes_of(it))))
         });
         Form::in_bins(&groups.collect::<Vec<_>>())
     }
@@ -164,6 +174,17 @@ fn slope(tangents: &[Vec<f64>; 2], corners: &[DVec3]) -> Option<[f64; 2]> {
     (normal.z > STEEP).then(|| [-normal.x / normal.z, -normal.y / normal.z])
 }
 
+/// The first corner of a triangle, and the ways from it to the others.
+fn seen_from_above([a, b, c]: &[DVec3; 3]) -> [DVec2; 3] {
+    [a.truncate(), (b - a).truncate(), (c - a).truncate()]
+}
+
+/// Whether a triangle is seen from above, and not from below or from the side.
+fn is_seen(corners: &[DVec3; 3]) -> bool {
+    let [_, ab, ac] = seen_from_above(corners);
+    ab.perp_dot(ac) > 1e-9 * ab.length_squared().max(ac.length_squared())
+}
+
 /// Up to four triangles, with the slopes at their corners, and the box around those that are seen from above, if any are.
 fn group(
     triangles: impl Iterator<Item = ([DVec3; 3], [Option<[f64; 2]>; 3])>,
@@ -175,12 +196,11 @@ fn group(
     };
     let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
     for (lane, (corners, slopes)) in triangles.enumerate() {
-        let [a, b, c] = corners;
-        let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
-        let area = ab.perp_dot(ac);
-        if area <= 1e-9 * ab.length_squared().max(ac.length_squared()) {
+        if !is_seen(&corners) {
             continue;
         }
+        let [a, ab, ac] = seen_from_above(&corners);
+        let area = ab.perp_dot(ac);
         let shares = [-ac.perp() / area, ab.perp() / area];
         for axis in 0..2 {
             group.origins[axis][lane] = a[axis] as f32;
