@@ -190,7 +190,7 @@ fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure
     let stated = ["region", "cells"].map(|name| inputs.get(name).is_some());
     match stated {
         [true, false] => {
-            let found = Found::new(build, &Arc::new(cells(inputs.region("region"))));
+            let found = Found::new(build, &Arc::new(cells(inputs.region("region"), build)?));
             Ok([found.border(), found.index()])
         }
         [false, true] => {
