@@ -5,11 +5,11 @@
 
 #[path = "support/clock.rs"]
 mod clock;
+#[path = "../tests/support/node.rs"]
+mod node;
 
 use clock::{median, seconds};
 use std::hint::black_box;
-use std::sync::Arc;
-use yosegi::node::{Build, Inputs};
 use yosegi::value::Value;
 
 /// Width of a stone in mm.
@@ -60,18 +60,9 @@ fn time(method: &'static str, count: usize) -> f64 {
         ("steps", Value::Whole(600)),
         ("seed", Value::Whole(0)),
     ];
-    let mut values = vec![None; kind.inputs.len()];
-    for (name, value) in given {
-        let (index, _) = kind.input(name).expect("the kind has the input");
-        values[index] = Some(value);
-    }
-    let build = Build {
-        node: &Arc::from("bench"),
-        seed: 1,
-        cancel: None,
-    };
+    let values = node::inputs(kind, &given);
     seconds(&mut || {
-        let cells = (kind.build)(&Inputs::new(kind, &values), &build);
+        let cells = node::built(kind, &values, 1, None);
         black_box(cells.expect("the node can be built"));
     })
 }

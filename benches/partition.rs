@@ -6,12 +6,12 @@
 
 #[path = "support/clock.rs"]
 mod clock;
+#[path = "../tests/support/node.rs"]
+mod node;
 
 use clock::{median, seconds};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation as _};
 use std::hint::black_box;
-use std::sync::Arc;
-use yosegi::node::{Build, Inputs};
 use yosegi::nodes::partition::voronoi_split::KIND;
 use yosegi::value::Value;
 
@@ -20,18 +20,21 @@ const PAIRS: usize = 7;
 
 fn main() {
     let random = anywhere();
-    let inputs = inputs(&random);
+    let inputs = inputs(&random, "size");
     println!(
         "cells of {SEEDS} seeds, a plain walk that stores their vertices and neighbours, and the ratio (< 1.3)"
     );
     let (ours, plain, ratio) = compare(&mut || cells(&inputs), &mut || walk(&random));
     println!("{ours:>8.3} s {plain:>8.3} s {ratio:>8.2}");
-    println!("\nagainst random seeds (< 2)");
-    for (name, place) in PLACES {
-        let seeds: Vec<[f64; 2]> = (0..SEEDS).map(|seed| place(seed, &random)).collect();
-        let awkward = self::inputs(&seeds);
-        let (first, _, ratio) = compare(&mut || cells(&awkward), &mut || cells(&inputs));
-        println!("{name:<28} {first:>8.3} s {ratio:>8.2}");
+    for ground in ["size", "period"] {
+        println!("\nagainst random seeds, in a {ground} (< 2)");
+        let inputs = self::inputs(&random, ground);
+        for (name, place) in PLACES {
+            let seeds: Vec<[f64; 2]> = (0..SEEDS).map(|seed| place(seed, &random)).collect();
+            let awkward = self::inputs(&seeds, ground);
+            let (first, _, ratio) = compare(&mut || cells(&awkward), &mut || cells(&inputs));
+            println!("{name:<28} {first:>8.3} s {ratio:>8.2}");
+        }
     }
 }
 
@@ -81,32 +84,22 @@ fn anywhere() -> Vec<[f64; 2]> {
     (0..SEEDS).map(|_| [number(), number()]).collect()
 }
 
-fn inputs(seeds: &[[f64; 2]]) -> Vec<Option<Value>> {
+fn inputs(seeds: &[[f64; 2]], ground: &'static str) -> Vec<Option<Value>> {
     let points = seeds.iter().map(|seed| Value::Pair(*seed)).collect();
-    let mut values = vec![None; KIND.inputs.len()];
     let given = [
         ("seeds", Value::Choice("given")),
         ("points", Value::List(points)),
-        ("size", Value::Pair([1.0, 1.0])),
+        (ground, Value::Pair([1.0, 1.0])),
         ("relax", Value::Whole(0)),
         ("merge_below", Value::Number(0.0)),
         ("seed", Value::Whole(0)),
     ];
-    for (name, value) in given {
-        let (index, _) = KIND.input(name).expect("the kind has this input");
-        values[index] = Some(value);
-    }
-    values
+    node::inputs(&KIND, &given)
 }
 
 /// The whole node: corners, neighbours, areas, centres, attribute.
 fn cells(values: &[Option<Value>]) {
-    let build = Build {
-        node: &Arc::from("bench"),
-        seed: 0,
-        cancel: None,
-    };
-    let cells = (KIND.build)(&Inputs::new(&KIND, values), &build);
+    let cells = node::built(&KIND, values, 0, None);
     black_box(cells.expect("all seeds are in the rectangle"));
 }
 

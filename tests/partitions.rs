@@ -1,8 +1,12 @@
 //! Partitions: Voronoi cells and patterns against known values, and the laws that all of them obey.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+#[path = "partitions/bent.rs"]
+mod bent;
 #[path = "partitions/degenerate.rs"]
 mod degenerate;
+#[path = "support/node.rs"]
+mod node;
 #[path = "partitions/patterns.rs"]
 mod patterns;
 #[path = "partitions/vectors.rs"]
@@ -13,7 +17,7 @@ mod voronoi;
 use glam::DVec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use yosegi::node::{Build, Failure, Inputs, Kind};
+use yosegi::node::{Failure, Kind};
 use yosegi::nodes::partition::{split_cells, voronoi_split};
 use yosegi::value::{Partition, Value};
 
@@ -21,16 +25,7 @@ type Given = Vec<(&'static str, Value)>;
 
 /// What a node of a kind gives.
 fn built(kind: &'static Kind, given: Given) -> Result<Arc<Partition>, Failure> {
-    let mut values = vec![None; kind.inputs.len()];
-    for (name, value) in given {
-        values[kind.input(name).unwrap().0] = Some(value);
-    }
-    let build = Build {
-        node: &Arc::from("test"),
-        seed: 0,
-        cancel: None,
-    };
-    match (kind.build)(&Inputs::new(kind, &values), &build)?.remove(0) {
+    match node::built(kind, &node::inputs(kind, &given), 0, None)?.remove(0) {
         Value::Partition(cells) => {
             assert!(cells.is_sound());
             Ok(cells)
@@ -56,6 +51,7 @@ fn laid(pattern: &'static str, given: Given) -> Result<Arc<Partition>, Failure> 
     let mut all: Given = vec![
         ("pattern", Value::Choice(pattern)),
         ("lengths", Value::Pair([1.0, 1.0])),
+        ("widths", Value::Pair([1.0, 1.0])),
         ("bond", Value::Choice("running")),
         ("slope", Value::Number(45.0)),
         ("rise", Value::Number(0.2)),

@@ -7,27 +7,20 @@ mod cells;
 mod files;
 #[path = "regions/literals.rs"]
 mod literals;
+#[path = "support/node.rs"]
+mod node;
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use yosegi::engine::{Cancel, Engine, Event, Options, Render};
 use yosegi::graph::{Settings, load_text};
-use yosegi::node::{Build, Failure, Inputs, Kind};
+use yosegi::node::{Failure, Kind};
 use yosegi::value::{Region, Value};
 use yosegi::world::Memory;
 
 /// What a node of a kind gives; its defaults are among what is given.
 fn built(kind: &'static Kind, given: Vec<(&str, Value)>) -> Result<Vec<Value>, Failure> {
-    let mut values = vec![None; kind.inputs.len()];
-    for (name, value) in given {
-        values[kind.input(name).unwrap().0] = Some(value);
-    }
-    let build = Build {
-        node: &Arc::from("test"),
-        seed: 0,
-        cancel: None,
-    };
-    (kind.build)(&Inputs::new(kind, &values), &build)
+    node::built(kind, &node::inputs(kind, &given), 0, None)
 }
 
 fn region_of(values: Vec<Value>) -> Arc<Region> {

@@ -123,11 +123,22 @@ impl BoxTree {
         point: DVec2,
         distance_squared: impl Fn(u32) -> f64,
     ) -> Option<u32> {
-        let mut best = (f64::INFINITY, u32::MAX);
+        self.nearest_within(point, f64::INFINITY, distance_squared)
+    }
+
+    /// [`BoxTree::nearest`] of the items whose squared distance is less than `most`.
+    pub(crate) fn nearest_within(
+        &self,
+        point: DVec2,
+        most: f64,
+        distance_squared: impl Fn(u32) -> f64,
+    ) -> Option<u32> {
+        let mut best = (most, u32::MAX);
         self.search(point, |limit, item| {
             if let Some(item) = item {
                 let distance = distance_squared(item);
-                if distance < best.0 || (distance == best.0 && item < best.1) {
+                if distance < best.0 || (distance == best.0 && item < best.1 && best.1 != u32::MAX)
+                {
                     best = (distance, item);
                 }
             }

@@ -156,6 +156,46 @@ fn lengths_are_in_their_range_and_a_ratio_that_is_none_is_refused() {
 }
 
 #[test]
+fn rows_have_widths_of_their_own() {
+    for ground in ["size", "period"] {
+        let mut inputs = board(30.0, 10.0, size(ground, 600.0, 400.0));
+        inputs.push(("widths", Value::Pair([0.6, 1.4])));
+        inputs.push(("lengths", Value::Pair([0.5, 1.5])));
+        let cells = laid("rows", inputs.clone()).unwrap();
+        assert_tiles(&cells, 240_000.0);
+        let mut widths = std::collections::BTreeMap::new();
+        for cell in 0..cells.len() {
+            let corners = cells.outline(cell).iter().map(|at| at.y);
+            let ends = [f64::INFINITY, f64::NEG_INFINITY];
+            let [low, high] = corners.fold(ends, |[low, high], y| [low.min(y), high.max(y)]);
+            let row = cells.attributes["row"][cell] as i64;
+            let width = *widths.entry(row).or_insert(high - low);
+            assert!((width - (high - low)).abs() < 1e-6, "row {row}");
+        }
+        // The first and the last row of a size are cut off.
+        let whole: Vec<f64> = widths.values().copied().collect();
+        let whole = &whole[1..whole.len() - 1];
+        let sum: f64 = whole.iter().sum();
+        let mean = sum / whole.len() as f64;
+        let spread = whole
+            .iter()
+            .map(|width| (width - mean).abs())
+            .fold(0.0, f64::max);
+        assert!(
+            (9.0..11.0).contains(&mean) && spread > 2.0,
+            "{mean}, {spread}"
+        );
+        assert!(whole.iter().all(|width| (5.5..15.0).contains(width)));
+        inputs.push(("widths", Value::Pair([1.4, 0.6])));
+        let failure = laid("rows", inputs).unwrap_err();
+        assert_eq!(
+            failure.message,
+            "expected a range from low to high, found from 1.4 to 0.6"
+        );
+    }
+}
+
+#[test]
 fn hexagons_have_six_neighbours_and_fans_have_arcs() {
     let hexagons = laid("hexagons", board(20.0, 20.0, size("period", 200.0, 173.0))).unwrap();
     assert!((0..hexagons.len()).all(|cell| hexagons.neighbours_of(cell).len() == 6));

@@ -208,6 +208,29 @@ fn cells_that_vanish_are_counted() {
     );
 }
 
+#[test]
+fn cells_that_fall_apart_are_counted() {
+    // Two dumbbells whose bars are narrower than the joint, and a square.
+    let bell = |y: f64| {
+        let [low, bar, top, high] = [0.0, 1.5, 2.5, 4.0].map(|it| it + y);
+        format!(
+            "(outline: [(0, {low}), (4, {low}), (4, {bar}), (8, {bar}), (8, {low}), (14, {low}), \
+             (14, {high}), (8, {high}), (8, {top}), (4, {top}), (4, {high}), (0, {high})])"
+        )
+    };
+    let nodes = format!(
+        "\"cells\": region_cells(of: \"three\"), \"three\": region(outlines: [
+        {}, {}, (outline: [(0, 20), (9, 20), (9, 29), (0, 29)])]),
+        \"example\": inset_cells(of: \"cells\", joint: 1.2)",
+        bell(0.0),
+        bell(10.0)
+    );
+    assert_eq!(
+        told(&[], &nodes).unwrap(),
+        ["2 of 3 cells fall apart between their joints: the largest part of each is kept"]
+    );
+}
+
 fn with_attribute(given: Vec<(&str, Value)>) -> Result<Vec<f64>, String> {
     let mut values = vec![
         ("of", Value::Partition(Arc::new(squares()))),

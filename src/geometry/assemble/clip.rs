@@ -12,38 +12,34 @@ const FIELDS: f64 = 24.0;
 
 /// The parts of the pieces inside the region, in their order. Pieces wholly inside stay as they are bit by bit; each connected part
 /// becomes a piece of its own: the largest keeps the id, the others get new ids behind the highest. Edges must be
-/// straight.
-pub(crate) fn clip(pieces: Vec<Piece>, region: &Region) -> Vec<Piece> {
-    clip_from(pieces, region).0
+/// straight. `go_on` is asked now and then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn clip<E>(
+    pieces: Vec<Piece>,
+    region: &Region,
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Vec<Piece>, E> {
+    Ok(clip_from(pieces, region, go_on)?.0)
 }
 
 /// [`clip`], and which piece each part was cut from.
-pub(crate) fn clip_from(pieces: Vec<Piece>, region: &Region) -> (Vec<Piece>, Vec<usize>) {
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn clip_from<E>(
+    pieces: Vec<Piece>,
+    region: &Region,
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<(Vec<Piece>, Vec<usize>), E> {
     let clipper = Clipper::new(region);
-    let mut fields: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
-    let places: Vec<Place> = pieces
-        .par_iter()
-        .map(|piece| clipper.place(piece))
-        .collect();
-    for (number, place) in places.iter().enumerate() {
-        if let Place::Border(field) = place {
-            fields.entry(*field).or_default().push(number);
-        }
-    }
-    let fields: Vec<_> = fields.into_values().collect();
-    let cut: Vec<(usize, Vec<Piece>)> = fields
-        .par_iter()
-        .flat_map_iter(|numbers| clipper.clip_all(&pieces, numbers))
-        .collect();
-    let mut parts: Vec<Option<Vec<Piece>>> = pieces.iter().map(|_| None).collect();
-    for (number, of_piece) in cut {
-        parts[number] = Some(of_piece);
-    }
-    let highest = pieces
-        .iter()
-        .map(|piece| piece.id)
-        .max()
-        .unwrap_or_default();
+    let place = |piece: &Piece| clipper.place(piece);
+    let places: Vec<Place> = pieces.par_iter().map(place).collect();
+    go_on()?;
+    let parts = clipper.parts(&pieces, &places, go_on)?;
+    let ids = pieces.iter().map(|piece| piece.id);
+    let highest = ids.max().unwrap_or_default();
     let mut clipped = vec![];
     let mut more = vec![];
     for (number, ((piece, place), parts)) in pieces.into_iter().zip(places).zip(parts).enumerate() {
@@ -62,7 +58,7 @@ pub(crate) fn clip_from(pieces: Vec<Piece>, region: &Region) -> (Vec<Piece>, Vec
         .zip(ids)
         .for_each(|((part, _), id)| part.id = id);
     clipped.extend(more);
-    clipped.into_iter().unzip()
+    Ok(clipped.into_iter().unzip())
 }
 
 /// Where a piece lies.
@@ -72,6 +68,9 @@ enum Place {
     /// Edges of the region come near; the piece is in this field.
     Border([i64; 2]),
 }
+
+/// Pieces that are cut between two questions whether to go on; those of one field are cut together.
+const AT_ONCE: usize = 512;
 
 struct Clipper<'a> {
     region: &'a Region,
@@ -116,6 +115,43 @@ impl<'a> Clipper<'a> {
         let middle = 0.5 * (low + high).clamp(2.0 * self.low, 2.0 * self.high);
         let field = ((middle - self.low) / (self.high - self.low) * FIELDS).floor();
         Place::Border(field.as_i64vec2().to_array())
+    }
+
+    /// The parts of the pieces at the border, by the pieces.
+    fn parts<E>(
+        &self,
+        pieces: &[Piece],
+        places: &[Place],
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Vec<Option<Vec<Piece>>>, E> {
+        let mut fields: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
+        for (number, place) in places.iter().enumerate() {
+            if let Place::Border(field) = place {
+                fields.entry(*field).or_default().push(number);
+            }
+        }
+        let mut parts: Vec<Option<Vec<Piece>>> = pieces.iter().map(|_| None).collect();
+        let mut fields: Vec<Vec<usize>> = fields.into_values().collect();
+        while !fields.is_empty() {
+            go_on()?;
+            let mut count = 0;
+            let mut is_next = |field: &[usize]| {
+                count += field.len();
+                count <= AT_ONCE
+            };
+            let next = fields
+                .iter()
+                .take_while(|field| is_next(field))
+                .count()
+                .max(1);
+            let next: Vec<Vec<usize>> = fields.drain(..next).collect();
+            let cut = next.par_iter();
+            let cut = cut.flat_map_iter(|numbers| self.clip_all(pieces, numbers));
+            for (number, of_piece) in cut.collect::<Vec<_>>() {
+                parts[number] = Some(of_piece);
+            }
+        }
+        Ok(parts)
     }
 
     /// Some steps of the lattice.

@@ -11,40 +11,56 @@ use std::collections::{BTreeMap, VecDeque};
 /// How far apart corners of one partition may be that count as one, as a share of its extent.
 const NEAR: f64 = 1e-12;
 
+/// Cells looked at between two questions whether to go on.
+const AT_ONCE: usize = 1024;
+
 /// Joins cells that have the same number in `owner` into one cell each, whose id, frame and attributes are those of the
-/// largest, and in whose place it comes. Parts that do not hang together by an edge stay apart.
-pub(crate) fn dissolve(partition: &Partition, owner: &[u32]) -> Partition {
-    let draft = Draft::of(partition, NEAR * extent(partition));
-    let groups = groups(partition, &draft, owner);
-    let (mut pieces, mut members) = (vec![], vec![]);
-    for group in groups {
-        let largest = group.iter().map(|(cell, _)| *cell);
-        let by_area = |a: &usize, b: &usize| {
-            partition.areas[*a]
-                .total_cmp(&partition.areas[*b])
-                .then(b.cmp(a))
-        };
-        let Some(largest) = largest.max_by(by_area) else {
-            continue;
-        };
-        members.push(largest);
-        pieces.push(joined(partition, &draft, &group, largest));
+/// largest, and in whose place it comes. Parts that do not hang together by an edge stay apart. `go_on` is asked now and
+/// then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn dissolve<E>(
+    partition: &Partition,
+    owner: &[u32],
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Partition, E> {
+    let tolerance = NEAR * extent(partition);
+    let draft = Draft::of(partition, tolerance, go_on)?;
+    let by_area = |a: &usize, b: &usize| {
+        let areas = [*a, *b].map(|cell| partition.areas[cell]);
+        areas[0].total_cmp(&areas[1]).then(b.cmp(a))
+    };
+    let mut all = vec![];
+    for (number, group) in groups(partition, &draft, owner, go_on)?.iter().enumerate() {
+        if number.is_multiple_of(AT_ONCE) {
+            go_on()?;
+        }
+        let members = group.iter().map(|(cell, _)| *cell);
+        if let Some(largest) = members.max_by(by_area) {
+            all.push((largest, joined(partition, &draft, group, largest)));
+        }
     }
-    let mut order: Vec<usize> = (0..pieces.len()).collect();
-    order.sort_by_key(|piece| members[*piece]);
-    let pieces = order.iter().map(|piece| pieces[*piece].clone()).collect();
-    let (mut joined, kept) = assemble_kept(pieces, partition.period, NEAR * extent(partition));
+    all.sort_by_key(|(largest, _)| *largest);
+    let (members, pieces): (Vec<usize>, Vec<Piece>) = all.into_iter().unzip();
+    let (mut joined, kept) = assemble_kept(pieces, partition.period, tolerance, go_on)?;
     for (name, numbers) in &partition.attributes {
-        let of = |piece: &usize| numbers[members[order[*piece]]];
-        let numbers = kept.iter().map(of).collect();
+        let numbers = kept.iter().map(|piece| numbers[members[*piece]]).collect();
         joined.attributes.insert(name.clone(), numbers);
     }
-    joined
+    Ok(joined)
 }
 
 /// Joins cells of less than `least` mm² to the neighbour they share the longest border with, the smallest first, until
-/// none is left that has a neighbour; and how many that were.
-pub(crate) fn merge_slivers(partition: &Partition, least: f64) -> (Partition, usize) {
+/// none is left that has a neighbour; and how many that were. `go_on` is asked now and then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn merge_slivers<E>(
+    partition: &Partition,
+    least: f64,
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<(Partition, usize), E> {
     let mut owner: Vec<u32> = (0..partition.len() as u32).collect();
     let mut areas = partition.areas.clone();
     let mut small: Vec<usize> = (0..partition.len())
@@ -52,31 +68,38 @@ pub(crate) fn merge_slivers(partition: &Partition, least: f64) -> (Partition, us
         .collect();
     small.sort_by(|a, b| areas[*a].total_cmp(&areas[*b]).then(a.cmp(b)));
     let mut count = 0;
-    for cell in small {
+    for (number, cell) in small.into_iter().enumerate() {
+        if number.is_multiple_of(AT_ONCE) {
+            go_on()?;
+        }
         let root = root(&owner, cell);
         if areas[root] >= least {
             continue;
         }
-        let borders = borders(partition, cell, |other| self::root(&owner, other));
-        let others = borders.into_iter().filter(|(other, _)| *other != root);
-        // Of equally long borders the first.
-        let longest = others.fold(None, |best: Option<(usize, f64)>, (other, length)| {
-            best.filter(|best| best.1 >= length)
-                .or(Some((other, length)))
-        });
-        if let Some((other, _)) = longest {
+        if let Some(other) = longest_border(partition, cell, root, &owner) {
             owner[root] = other as u32;
             areas[other] += areas[root];
             count += 1;
         }
     }
     if count == 0 {
-        return (partition.clone(), 0);
+        return Ok((partition.clone(), 0));
     }
     let owner: Vec<u32> = (0..owner.len())
         .map(|cell| root(&owner, cell) as u32)
         .collect();
-    (dissolve(partition, &owner), count)
+    Ok((dissolve(partition, &owner, go_on)?, count))
+}
+
+/// The owner other than its own that a cell has the longest border with; of equally long borders the first.
+fn longest_border(partition: &Partition, cell: usize, own: usize, owner: &[u32]) -> Option<usize> {
+    let borders = borders(partition, cell, |other| root(owner, other));
+    let others = borders.into_iter().filter(|(other, _)| *other != own);
+    let longest = others.fold(None, |best: Option<(usize, f64)>, (other, length)| {
+        best.filter(|best| best.1 >= length)
+            .or(Some((other, length)))
+    });
+    longest.map(|(other, _)| other)
 }
 
 fn root(owner: &[u32], mut cell: usize) -> usize {
@@ -121,10 +144,18 @@ fn extent(partition: &Partition) -> f64 {
 /// Cells of one owner that hang together, each with the periods it must be moved by to lie beside the first.
 type Group = Vec<(usize, [i32; 2])>;
 
-fn groups(partition: &Partition, draft: &Draft, owner: &[u32]) -> Vec<Group> {
+fn groups<E>(
+    partition: &Partition,
+    draft: &Draft,
+    owner: &[u32],
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Vec<Group>, E> {
     let mut seen = vec![false; partition.len()];
     let mut groups = vec![];
     for first in 0..partition.len() {
+        if first.is_multiple_of(AT_ONCE) {
+            go_on()?;
+        }
         if std::mem::replace(&mut seen[first], true) {
             continue;
         }
@@ -147,7 +178,7 @@ fn groups(partition: &Partition, draft: &Draft, owner: &[u32]) -> Vec<Group> {
         }
         groups.push(group);
     }
-    groups
+    Ok(groups)
 }
 
 /// The piece of some cells that hang together.

@@ -28,12 +28,17 @@ pub(super) struct Ring {
 }
 
 impl Draft {
-    pub(super) fn new(pieces: &[Piece], period: Option<DVec2>, tolerance: f64) -> Draft {
+    pub(super) fn new<E>(
+        pieces: &[Piece],
+        period: Option<DVec2>,
+        tolerance: f64,
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Draft, E> {
         let rings = || pieces.iter().flat_map(|piece| &piece.rings);
         let drawn: Vec<DVec2> = rings()
             .flat_map(|ring| ring.corners.iter().copied())
             .collect();
-        let (points, welded) = weld(&drawn, period, tolerance);
+        let (points, welded) = weld(&drawn, period, tolerance, go_on)?;
         let mut welded = welded.into_iter();
         let mut take = |ring: &Drawn| Ring {
             corners: welded.by_ref().take(ring.corners.len()).collect(),
@@ -44,12 +49,12 @@ impl Draft {
         let pieces = pieces
             .iter()
             .map(|piece| piece.rings.iter().map(&mut take).collect());
-        Draft {
+        Ok(Draft {
             pieces: pieces.collect(),
             points,
             period,
             tolerance,
-        }
+        })
     }
 
     /// Where a corner is.
@@ -169,8 +174,12 @@ impl Ring {
 
 impl Draft {
     /// The corners of a partition.
-    pub(super) fn of(partition: &Partition, tolerance: f64) -> Draft {
-        let (points, corners) = weld(&partition.corners, partition.period, tolerance);
+    pub(super) fn of<E>(
+        partition: &Partition,
+        tolerance: f64,
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Draft, E> {
+        let (points, corners) = weld(&partition.corners, partition.period, tolerance, go_on)?;
         let ring = |range: Range<usize>| Ring {
             bulges: range
                 .clone()
@@ -179,12 +188,12 @@ impl Draft {
             corners: corners[range].to_vec(),
         };
         let pieces = (0..partition.len()).map(|cell| partition.rings_of(cell).map(ring).collect());
-        Draft {
+        Ok(Draft {
             pieces: pieces.collect(),
             points,
             period: partition.period,
             tolerance,
-        }
+        })
     }
 
     /// The edges of a cell of [`Draft::of`]: its ends, what is beyond, and how it is bent.

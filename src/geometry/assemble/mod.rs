@@ -74,21 +74,32 @@ pub(crate) fn pieces_of(partition: &Partition) -> Vec<Piece> {
 ///
 /// Corners closer than `tolerance` mm become one, straight edges are split where a corner of another piece lies on them, rings run
 /// the way they should, and pieces without area are dropped; the others keep their order. In a periodic
-/// partition, cells are moved by whole periods until their centres lie within the first.
-pub(crate) fn assemble(pieces: Vec<Piece>, period: Option<DVec2>, tolerance: f64) -> Partition {
-    assemble_kept(pieces, period, tolerance).0
-}
-
-/// [`assemble`], and which pieces became cells.
-fn assemble_kept(
+/// partition, cells are moved by whole periods until their centres lie within the first. `go_on` is asked now and then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn assemble<E>(
     pieces: Vec<Piece>,
     period: Option<DVec2>,
     tolerance: f64,
-) -> (Partition, Vec<usize>) {
-    let mut draft = Draft::new(&pieces, period, tolerance);
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Partition, E> {
+    Ok(assemble_kept(pieces, period, tolerance, go_on)?.0)
+}
+
+/// [`assemble`], and which pieces became cells.
+fn assemble_kept<E>(
+    pieces: Vec<Piece>,
+    period: Option<DVec2>,
+    tolerance: f64,
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<(Partition, Vec<usize>), E> {
+    let mut draft = Draft::new(&pieces, period, tolerance, go_on)?;
     draft.tidy();
-    split::split_edges(&mut draft, tolerance);
+    go_on()?;
+    split::split_edges(&mut draft, tolerance, go_on)?;
     draft.tidy();
+    go_on()?;
     let kept: Vec<usize> = (0..pieces.len())
         .filter(|piece| draft.has_outline(*piece))
         .collect();
@@ -96,11 +107,13 @@ fn assemble_kept(
     let cells: Vec<_> = kept.iter().map(of_kept).collect();
     draft.pieces = cells;
     let neighbours = edges::neighbours(&draft);
+    go_on()?;
     let cells: Vec<Cell> = kept
         .par_iter()
         .zip(&draft.pieces)
         .map(|(piece, rings)| Cell::new(&pieces[*piece], rings, &draft))
         .collect();
+    go_on()?;
     let mut partition = Partition {
         neighbours,
         period,
@@ -113,7 +126,7 @@ fn assemble_kept(
         partition.ids.push(pieces[*piece].id);
         partition.frames.push(cell.frame);
     }
-    (partition, kept)
+    Ok((partition, kept))
 }
 
 /// Where the rings and cells of a draft begin, and how its edges are bent.

@@ -7,9 +7,18 @@ use crate::value::Partition;
 use glam::{DVec2, I64Vec2};
 use rayon::prelude::*;
 
-/// Splits straight edges without a neighbour at the corners that lie on them, up to `tolerance` mm off.
-pub(super) fn split_edges(draft: &mut Draft, tolerance: f64) {
+/// Splits straight edges without a neighbour at the corners that lie on them, up to `tolerance` mm off. `go_on` is asked now and
+/// then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(super) fn split_edges<E>(
+    draft: &mut Draft,
+    tolerance: f64,
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<(), E> {
     let neighbours = neighbours(draft);
+    go_on()?;
     let mut alone = neighbours.iter().map(|cell| *cell == Partition::NONE);
     let flags: Vec<Vec<Vec<bool>>> = draft
         .pieces
@@ -20,8 +29,9 @@ pub(super) fn split_edges(draft: &mut Draft, tolerance: f64) {
         })
         .collect();
     let Some(grid) = Grid::new(draft, &flags, tolerance) else {
-        return;
+        return Ok(());
     };
+    go_on()?;
     let pieces: Vec<Vec<Ring>> = draft
         .pieces
         .par_iter()
@@ -34,6 +44,7 @@ pub(super) fn split_edges(draft: &mut Draft, tolerance: f64) {
         })
         .collect();
     draft.pieces = pieces;
+    go_on()
 }
 
 /// Corners by place.

@@ -1,10 +1,34 @@
 //! Pieces put together, cut and joined.
 
-use super::dissolve::dissolve;
 use super::*;
 use crate::value::{Polygon, Region};
+use std::convert::Infallible;
 
 const NONE: u32 = Partition::NONE;
+
+fn assemble(pieces: Vec<Piece>, period: Option<DVec2>, tolerance: f64) -> Partition {
+    let Ok(cells) = super::assemble(pieces, period, tolerance, &mut go_on);
+    cells
+}
+
+fn clip(pieces: Vec<Piece>, region: &Region) -> Vec<Piece> {
+    let Ok(parts) = super::clip(pieces, region, &mut go_on);
+    parts
+}
+
+fn dissolve(cells: &Partition, owner: &[u32]) -> Partition {
+    let Ok(joined) = dissolve::dissolve(cells, owner, &mut go_on);
+    joined
+}
+
+fn merge_slivers(cells: &Partition, least: f64) -> (Partition, usize) {
+    let Ok(merged) = super::merge_slivers(cells, least, &mut go_on);
+    merged
+}
+
+fn go_on() -> Result<(), Infallible> {
+    Ok(())
+}
 
 fn ring(corners: &[(f64, f64)]) -> Vec<DVec2> {
     corners.iter().map(|(x, y)| DVec2::new(*x, *y)).collect()
@@ -210,4 +234,48 @@ fn cells_that_repeat_are_joined_across_the_seam() {
     check(&joined, 9.0);
     assert_eq!(joined.areas[0], 2.0);
     assert_eq!(joined.neighbours_of(0), [1, 2, 4, 5, 7]);
+}
+
+#[test]
+fn a_cancelled_run_ends_before_it_takes_long() {
+    // So many squares that all stages together take some tenths of a second.
+    let count = 250_u32;
+    let square = |id: u32| {
+        let low = (f64::from(id % count), f64::from(id / count));
+        block(id, low, (low.0 + 1.0, low.1 + 1.0))
+    };
+    let squares: Vec<Piece> = (0..count * count).map(square).collect();
+    let side = f64::from(count) - 0.5;
+    let slanting = region(
+        &[
+            (0.5, 0.25),
+            (side, 0.0),
+            (side - 1.0, side),
+            (0.0, side - 1.0),
+        ],
+        &[],
+    );
+    let work = |go_on: &mut dyn FnMut() -> Result<(), ()>| -> Result<usize, ()> {
+        let pieces = super::clip(squares.clone(), &slanting, go_on)?;
+        let cells = super::assemble(pieces, None, 1e-6, go_on)?;
+        let (cells, _) = super::merge_slivers(&cells, 0.4, go_on)?;
+        Ok(cells.len())
+    };
+    let mut asked = 0;
+    let mut count_asked = || {
+        asked += 1;
+        Ok(())
+    };
+    assert!(work(&mut count_asked).is_ok());
+    assert!(asked > 60, "{asked}");
+    // Whichever question is answered with an error is the last one.
+    for last in [1, 5, asked / 2, asked] {
+        let mut left = last;
+        let mut stop = || {
+            left -= 1;
+            if left == 0 { Err(()) } else { Ok(()) }
+        };
+        assert_eq!(work(&mut stop), Err(()));
+        assert_eq!(left, 0);
+    }
 }

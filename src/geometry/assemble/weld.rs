@@ -22,18 +22,24 @@ impl Corner {
 }
 
 /// The places of shared corners, and which of them each point becomes: the first of those that are linked by steps of at
-/// most `tolerance`.
-pub(crate) fn weld(
+/// most `tolerance`. `go_on` is asked now and then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn weld<E>(
     drawn: &[DVec2],
     period: Option<DVec2>,
     tolerance: f64,
-) -> (Vec<DVec2>, Vec<Corner>) {
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<(Vec<DVec2>, Vec<Corner>), E> {
     let within = |point: &DVec2| within_period(*point, period, tolerance);
     let places: Vec<(DVec2, [i32; 2])> = drawn.par_iter().map(within).collect();
     let mut groups: Vec<u32> = (0..drawn.len() as u32).collect();
     for shift in [0.0, 0.5] {
+        go_on()?;
         link(&places, shift, tolerance, &mut groups);
     }
+    go_on()?;
     let mut points = vec![];
     let mut numbers = vec![0; drawn.len()];
     let mut corners = Vec::with_capacity(drawn.len());
@@ -48,7 +54,7 @@ pub(crate) fn weld(
             period: *period,
         });
     }
-    (points, corners)
+    Ok((points, corners))
 }
 
 /// A point moved into the first period, and by how many periods it was moved.

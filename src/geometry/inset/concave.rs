@@ -8,8 +8,11 @@ use glam::DVec2;
 /// A pointed corner goes so many times the distance off, at most.
 const FARTHEST: f64 = 4.0;
 
-/// The largest part that is left of a cell: for each ring the corners, and the side that each edge is on.
-pub(super) fn cut(rings: &[&[DVec2]], sides: &[Side]) -> Vec<(Vec<DVec2>, Vec<usize>)> {
+/// A ring as its corners, and the side that each edge is on.
+type Sided = (Vec<DVec2>, Vec<usize>);
+
+/// The largest part that is left of a cell, ring by ring, and how many parts there are.
+pub(super) fn cut(rings: &[&[DVec2]], sides: &[Side]) -> (Vec<Sided>, usize) {
     let corners = rings.iter().copied().flatten();
     let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
     let [low, high] = corners.fold(none, |[low, high], at| [low.min(*at), high.max(*at)]);
@@ -21,22 +24,37 @@ pub(super) fn cut(rings: &[&[DVec2]], sides: &[Side]) -> Vec<(Vec<DVec2>, Vec<us
         .collect();
     let corners = sides.iter().flat_map(|before| {
         let behind = sides.iter().filter(move |next| next.from == before.to);
-        behind.filter_map(move |next| corner(before, next))
+        behind.filter_map(move |next| {
+            let ends = [before, next].map(|side| (side.along, side.off));
+            corner(before.to, ends)
+        })
     });
     let away: Vec<Vec<DVec2>> = away.into_iter().chain(corners).collect();
     let away: Vec<&[DVec2]> = away.iter().map(|ring| &ring[..]).collect();
     let lattice = Lattice::around([low - FARTHEST * most, high + FARTHEST * most]);
     let parts = lattice.overlay(Operation::Difference, rings, &away);
+    let (left, count) = largest(&parts, lattice);
+    let rings = left.iter().map(|ring| joined(ring, &sides_of(ring, sides)));
+    (rings.collect(), count)
+}
+
+/// The rings of the largest part, without edges that are no longer than rounding, and how many parts there are that
+/// are more than rounding.
+pub(super) fn largest(parts: &[Polygon], lattice: Lattice) -> (Vec<Vec<DVec2>>, usize) {
     let size = |part: &Polygon| area(std::slice::from_ref(part));
     let largest = parts
         .iter()
         .reduce(|best, next| if size(next) > size(best) { next } else { best });
+    let near = 64.0 * lattice.step();
+    let is_part = |part: &&Polygon| size(part) > near * perimeter(&part.outline);
     let rings = largest.into_iter().flat_map(Polygon::rings);
-    let apart = |ring: &[DVec2]| without_points(ring, 64.0 * lattice.step());
-    rings
-        .map(apart)
-        .map(|ring| joined(&ring, &sides_of(&ring, sides)))
-        .collect()
+    let rings = rings.map(|ring| without_points(ring, near));
+    (rings.collect(), parts.iter().filter(is_part).count())
+}
+
+fn perimeter(ring: &[DVec2]) -> f64 {
+    let next = ring.iter().cycle().skip(1);
+    ring.iter().zip(next).map(|(a, b)| a.distance(*b)).sum()
 }
 
 /// A ring without the edges that are no longer than rounding.
@@ -60,24 +78,21 @@ fn strip(side: &Side) -> Vec<DVec2> {
     vec![side.from, side.to, side.to + off, side.from + off]
 }
 
-/// What lies between the strips of two sides where the ring turns right.
-fn corner(before: &Side, next: &Side) -> Option<Vec<DVec2>> {
-    let sine = before.along.perp_dot(next.along);
-    let farther = before.off.max(next.off);
+/// What lies between the strips of two sides with a corner between them where the ring turns right; of each its direction there
+/// and how far it moves.
+pub(super) fn corner(at: DVec2, sides: [(DVec2, f64); 2]) -> Option<Vec<DVec2>> {
+    let [(before, first), (next, second)] = sides;
+    let sine = before.perp_dot(next);
+    let farther = first.max(second);
     if sine >= 0.0 || farther <= 0.0 {
         return None;
     }
-    let [a, b] = [before, next].map(|side| side.along.perp() * side.off);
+    let [a, b] = sides.map(|(along, off)| along.perp() * off);
     // Where both moved lines meet.
-    let point = a + before.along * ((b - a).perp_dot(next.along) / sine);
+    let point = a + before * ((b - a).perp_dot(next) / sine);
     let is_near = point.length() <= FARTHEST * farther;
-    let point = is_near.then_some(before.to + point);
-    let ring = [
-        Some(before.to),
-        Some(before.to + b),
-        point,
-        Some(before.to + a),
-    ];
+    let point = is_near.then_some(at + point);
+    let ring = [Some(at), Some(at + b), point, Some(at + a)];
     Some(ring.into_iter().flatten().collect())
 }
 

@@ -35,45 +35,56 @@ pub(crate) struct Bed<'a> {
     pub(crate) corners: u32,
 }
 
-/// The cells of stones; ids are the numbers of the stones.
-pub(crate) fn cells(bed: &Bed<'_>, stones: &[Stone]) -> Partition {
+/// The cells of stones; ids are the numbers of the stones. `go_on` is asked now and then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn cells<E>(
+    bed: &Bed<'_>,
+    stones: &[Stone],
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Partition, E> {
     let tolerance = 1e-9 * bed.bounds[1].max_element();
-    let pieces = bed.pieces(stones);
-    let partition = match bed.period {
-        None => {
-            let mut pieces = clip(pieces, bed.region);
-            let partition = assemble(pieces.clone(), None, tolerance);
-            let gaps = bed.gaps(&partition);
-            if gaps.is_empty() {
-                partition
-            } else {
-                let highest = pieces
-                    .iter()
-                    .map(|piece| piece.id)
-                    .max()
-                    .unwrap_or_default();
-                let numbered = gaps.into_iter().zip(highest + 1..);
-                pieces.extend(numbered.map(|(piece, id)| Piece { id, ..piece }));
-                assemble(pieces, None, tolerance)
-            }
-        }
-        Some(_) => assemble(pieces, bed.period, tolerance),
-    };
+    let partition = bed.covered(bed.pieces(stones, go_on)?, tolerance, go_on)?;
     let mean = stones
         .iter()
         .map(|stone| stone.scale * stone.scale)
         .sum::<f64>()
         / stones.len() as f64;
     let least = SLIVER * mean * bed.stone.x * bed.stone.y;
-    let (partition, _) = merge_slivers(&partition, least);
+    let (partition, _) = merge_slivers(&partition, least, go_on)?;
     let limits = Collapse {
         short: SHORT[usize::from(bed.corners != 4)] * bed.stone.min_element() * mean.sqrt(),
         tolerance,
     };
-    collapse(&partition, &limits)
+    collapse(&partition, &limits, go_on)
 }
 
 impl Bed<'_> {
+    /// The partition of pieces, cut off at the border, and of what they leave free.
+    fn covered<E>(
+        &self,
+        pieces: Vec<Piece>,
+        tolerance: f64,
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Partition, E> {
+        if self.period.is_some() {
+            return assemble(pieces, self.period, tolerance, go_on);
+        }
+        let mut pieces = clip(pieces, self.region, go_on)?;
+        let partition = assemble(pieces.clone(), None, tolerance, go_on)?;
+        let gaps = self.gaps(&partition);
+        go_on()?;
+        if gaps.is_empty() {
+            return Ok(partition);
+        }
+        let ids = pieces.iter().map(|piece| piece.id);
+        let highest = ids.max().unwrap_or_default();
+        let numbered = gaps.into_iter().zip(highest + 1..);
+        pieces.extend(numbered.map(|(piece, id)| Piece { id, ..piece }));
+        assemble(pieces, None, tolerance, go_on)
+    }
+
     /// What of the region lies in no cell: slips of land behind corners that turn into it.
     fn gaps(&self, partition: &Partition) -> Vec<Piece> {
         let whole: f64 = self.region.rings().map(doubled_area).sum();
@@ -119,7 +130,11 @@ impl Bed<'_> {
     }
 
     /// The cell of each stone, which may reach beyond the border.
-    fn pieces(&self, stones: &[Stone]) -> Vec<Piece> {
+    fn pieces<E>(
+        &self,
+        stones: &[Stone],
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Vec<Piece>, E> {
         let all = self.with_images(stones);
         let pattern = pattern(self.stone, self.corners);
         let of_stone = |(owner, stone): (usize, &Stone)| {
@@ -137,7 +152,8 @@ impl Bed<'_> {
         };
         let mut sites: Vec<Site> = all.par_iter().enumerate().flat_map_iter(of_stone).collect();
         sites.extend(self.guards());
-        let mosaic = mosaic(sites, all.len());
+        go_on()?;
+        let mosaic = mosaic(sites, all.len(), go_on)?;
         let ring = |ring: &Vec<u32>| {
             ring.iter()
                 .map(|corner| mosaic.points[*corner as usize])
@@ -156,7 +172,7 @@ impl Bed<'_> {
             frame: stone.frame,
             centre: None,
         };
-        pieces.map(piece).collect()
+        Ok(pieces.map(piece).collect())
     }
 
     /// The stones, and behind them their images around the period.

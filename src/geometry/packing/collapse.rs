@@ -44,12 +44,26 @@ struct Net {
     period: DVec2,
 }
 
-/// The partition with short edges turned into corners.
-pub(crate) fn collapse(partition: &Partition, limits: &Collapse) -> Partition {
-    let mut net = Net::new(partition, limits);
+/// Edges looked at between two questions whether to go on.
+const AT_ONCE: usize = 1024;
+
+/// The partition with short edges turned into corners. `go_on` is asked now and then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn collapse<E>(
+    partition: &Partition,
+    limits: &Collapse,
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Partition, E> {
+    let mut net = Net::new(partition, limits, go_on)?;
+    go_on()?;
     let mut edges = net.short_edges(limits.short);
     edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    for (_, from, to) in edges {
+    for (number, (_, from, to)) in edges.into_iter().enumerate() {
+        if number.is_multiple_of(AT_ONCE) {
+            go_on()?;
+        }
         net.join(from, to, limits.short);
     }
     let pieces = net.rings.iter().enumerate().map(|(cell, rings)| {
@@ -63,12 +77,18 @@ pub(crate) fn collapse(partition: &Partition, limits: &Collapse) -> Partition {
             centre: None,
         }
     });
-    assemble(pieces.collect(), partition.period, limits.tolerance)
+    let pieces = pieces.collect();
+    assemble(pieces, partition.period, limits.tolerance, go_on)
 }
 
 impl Net {
-    fn new(partition: &Partition, limits: &Collapse) -> Net {
-        let (points, corners) = weld(&partition.corners, partition.period, limits.tolerance);
+    fn new<E>(
+        partition: &Partition,
+        limits: &Collapse,
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Net, E> {
+        let (drawn, tolerance) = (&partition.corners, limits.tolerance);
+        let (points, corners) = weld(drawn, partition.period, tolerance, go_on)?;
         let mut net = Net {
             holds: vec![Hold::Free; points.len()],
             cells: vec![vec![]; points.len()],
@@ -76,36 +96,49 @@ impl Net {
             rings: vec![],
             period: partition.period.unwrap_or(DVec2::ZERO),
         };
-        let mut borders: Vec<Vec<DVec2>> = vec![vec![]; net.points.len()];
         for cell in 0..partition.len() {
-            let mut rings = vec![];
-            for (number, range) in partition.rings_of(cell).enumerate() {
-                let ring = corners[range.clone()].to_vec();
+            let rings = partition
+                .rings_of(cell)
+                .map(|range| corners[range].to_vec());
+            net.rings.push(rings.collect());
+            for corner in net.rings[cell].iter().flatten() {
+                let cells = &mut net.cells[corner.point as usize];
+                if cells.last() != Some(&(cell as u32)) {
+                    cells.push(cell as u32);
+                }
+            }
+        }
+        go_on()?;
+        net.hold(partition);
+        Ok(net)
+    }
+
+    /// Holds the points at borders: of the region, and of cells within others.
+    fn hold(&mut self, partition: &Partition) {
+        let mut borders: Vec<Vec<DVec2>> = vec![vec![]; self.points.len()];
+        for (cell, rings) in self.rings.iter().enumerate() {
+            let ranges = partition.rings_of(cell);
+            for (number, (ring, range)) in rings.iter().zip(ranges).enumerate() {
                 for (index, corner) in ring.iter().enumerate() {
                     let next = ring[(index + 1) % ring.len()];
-                    let cells = &mut net.cells[corner.point as usize];
-                    if cells.last() != Some(&(cell as u32)) {
-                        cells.push(cell as u32);
-                    }
-                    let neighbour = partition.neighbours[range.start + index];
-                    if neighbour == Partition::NONE || number > 0 {
-                        let along = (net.place(next) - net.place(*corner)).normalize_or(DVec2::X);
-                        borders[corner.point as usize].push(along);
-                        borders[next.point as usize].push(along);
+                    let beyond = partition.neighbours[range.start + index];
+                    if beyond == Partition::NONE || number > 0 {
+                        let along = self.place(next) - self.place(*corner);
+                        let along = along.normalize_or(DVec2::X);
+                        for end in [corner, &next] {
+                            borders[end.point as usize].push(along);
+                        }
                     }
                 }
-                rings.push(ring);
             }
-            net.rings.push(rings);
         }
-        for (hold, border) in net.holds.iter_mut().zip(borders) {
+        for (hold, border) in self.holds.iter_mut().zip(borders) {
             *hold = match border[..] {
                 [] => Hold::Free,
                 [a, b] if a.dot(b) > 0.0 && a.perp_dot(b).abs() < STRAIGHT => Hold::Border(a),
                 _ => Hold::Fixed,
             };
         }
-        net
     }
 
     fn place(&self, corner: Corner) -> DVec2 {
@@ -153,40 +186,18 @@ impl Net {
         if length > short || (cells.len() + outside > MOST && length > TINY * short) {
             return;
         }
-        let away = [0, 1].map(|axis| from.period[axis] - to.period[axis]);
-        let renamed = |corner: &Corner| {
-            if corner.point == to.point {
-                Corner {
-                    point: from.point,
-                    ..corner.moved(away)
-                }
-            } else {
-                *corner
-            }
-        };
-        let kept = self.points[a];
-        let mut changed = vec![];
-        for cell in &cells {
+        let rings = |cell: &u32| &self.rings[*cell as usize];
+        let areas: Vec<f64> = cells.iter().map(|cell| self.area(rings(cell))).collect();
+        let kept = std::mem::replace(&mut self.points[a], merged);
+        let changed = cells.iter().zip(areas);
+        let changed = changed.map(|(cell, area)| {
             let rings = &self.rings[*cell as usize];
-            let before = self.area(rings);
-            let is_quad = rings[0].len() >= 4;
-            let mut rings: Vec<Vec<Corner>> = rings
-                .iter()
-                .map(|ring| ring.iter().map(renamed).collect())
-                .collect();
-            rings.iter_mut().for_each(tidy);
-            self.points[a] = merged;
-            let is_sound = rings.iter().all(|ring| ring.len() >= 3)
-                && (rings[0].len() >= 4 || !is_quad)
-                && self.area(&rings) > KEPT * before
-                && is_simple(&self.drawn(&rings[0]));
+            self.renamed(rings, from, to, KEPT * area)
+        });
+        let Some(changed) = changed.collect::<Option<Vec<_>>>() else {
             self.points[a] = kept;
-            if !is_sound {
-                return;
-            }
-            changed.push(rings);
-        }
-        self.points[a] = merged;
+            return;
+        };
         for (cell, rings) in cells.iter().zip(changed) {
             self.rings[*cell as usize] = rings;
         }
@@ -195,6 +206,36 @@ impl Net {
         }
         self.cells[a] = cells;
         self.cells[b].clear();
+    }
+
+    /// The rings of a cell with `from` instead of `to`; `None` if the cell is not sound then, or has no more than `least` as its
+    /// doubled area.
+    fn renamed(
+        &self,
+        rings: &[Vec<Corner>],
+        from: Corner,
+        to: Corner,
+        least: f64,
+    ) -> Option<Vec<Vec<Corner>>> {
+        let away = [0, 1].map(|axis| from.period[axis] - to.period[axis]);
+        let renamed = |corner: &Corner| match corner.point == to.point {
+            true => Corner {
+                point: from.point,
+                ..corner.moved(away)
+            },
+            false => *corner,
+        };
+        let is_quad = rings[0].len() >= 4;
+        let mut rings: Vec<Vec<Corner>> = rings
+            .iter()
+            .map(|ring| ring.iter().map(renamed).collect())
+            .collect();
+        rings.iter_mut().for_each(tidy);
+        let is_sound = rings.iter().all(|ring| ring.len() >= 3)
+            && (rings[0].len() >= 4 || !is_quad)
+            && self.area(&rings) > least
+            && is_simple(&self.drawn(&rings[0]));
+        is_sound.then_some(rings)
     }
 
     /// Where two points meet: in the middle, or where the border holds one of them. Two that are held stay apart.

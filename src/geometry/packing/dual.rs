@@ -44,11 +44,19 @@ const ROUNDS: usize = 8;
 type Triangles = DelaunayTriangulation<Site>;
 type Edge<'a> = DirectedEdgeHandle<'a, Site, (), (), ()>;
 
-/// The cells of `count` stones. Sites must be finite, and those of the outside all around.
-pub(crate) fn mosaic(sites: Vec<Site>, count: usize) -> Mosaic {
+/// The cells of `count` stones. Sites must be finite, and those of the outside all around. `go_on` is asked now and then.
+///
+/// # Errors
+/// What `go_on` says.
+pub(crate) fn mosaic<E>(
+    sites: Vec<Site>,
+    count: usize,
+    go_on: &mut dyn FnMut() -> Result<(), E>,
+) -> Result<Mosaic, E> {
     let Ok(triangles) = Triangles::bulk_load(sites) else {
-        return Mosaic::default();
+        return Ok(Mosaic::default());
     };
+    go_on()?;
     let mut owners: Vec<u32> = triangles
         .vertices()
         .map(|vertex| vertex.data().owner)
@@ -56,6 +64,7 @@ pub(crate) fn mosaic(sites: Vec<Site>, count: usize) -> Mosaic {
     hang_together(&triangles, &mut owners, count);
     let mut is_bent = vec![false; count];
     for _ in 0..ROUNDS {
+        go_on()?;
         let rings = rings(&triangles, &owners, &is_bent);
         // A stone with fewer than three corners gives its place to a neighbour, whose corners change with that.
         let too_few: Vec<u32> = (0..count as u32)
@@ -64,7 +73,7 @@ pub(crate) fn mosaic(sites: Vec<Site>, count: usize) -> Mosaic {
         let mosaic = numbered(&triangles, rings);
         let crossed = mosaic.crossed();
         if too_few.is_empty() && crossed.is_empty() {
-            return mosaic;
+            return Ok(mosaic);
         }
         for stone in too_few {
             give_away(&triangles, &mut owners, |owner| owner == stone);
@@ -72,7 +81,8 @@ pub(crate) fn mosaic(sites: Vec<Site>, count: usize) -> Mosaic {
         // The borders of what would cross itself keep their bends.
         crossed.into_iter().for_each(|stone| is_bent[stone] = true);
     }
-    numbered(&triangles, rings(&triangles, &owners, &is_bent))
+    let rings = rings(&triangles, &owners, &is_bent);
+    Ok(numbered(&triangles, rings))
 }
 
 impl Mosaic {
@@ -181,49 +191,63 @@ fn rings(
     owners: &[u32],
     is_bent: &[bool],
 ) -> Vec<Vec<FixedFaceHandle<InnerTag>>> {
-    let mut is_passed = vec![false; triangles.num_directed_edges()];
+    let mut walk = Walk {
+        owners,
+        is_bent,
+        is_passed: vec![false; triangles.num_directed_edges()],
+    };
     let mut rings: Vec<(f64, Vec<FixedFaceHandle<InnerTag>>)> = vec![(0.0, vec![]); is_bent.len()];
-    let owner = |vertex: usize| owners[vertex];
     for edge in triangles.directed_edges() {
-        let stone = owner(edge.from().fix().index());
-        if stone == OUTSIDE
-            || stone == owner(edge.to().fix().index())
-            || is_passed[edge.fix().index()]
-        {
-            continue;
+        let [stone, beyond] = [edge.from(), edge.to()].map(|end| owners[end.fix().index()]);
+        if stone != OUTSIDE && stone != beyond && !walk.is_passed[edge.fix().index()] {
+            let (area, ring) = walk.around(edge, stone);
+            // Of several loops the largest is the outline.
+            if area > rings[stone as usize].0 {
+                rings[stone as usize] = (area, ring);
+            }
         }
+    }
+    rings.into_iter().map(|(_, ring)| ring).collect()
+}
+
+/// A walk around stones.
+struct Walk<'a> {
+    owners: &'a [u32],
+    is_bent: &'a [bool],
+    /// The edges that it has passed.
+    is_passed: Vec<bool>,
+}
+
+impl Walk<'_> {
+    /// Goes around a stone from an edge on that leads out of it: twice what lies within, and the triangles that are corners.
+    fn around(&mut self, edge: Edge<'_>, stone: u32) -> (f64, Vec<FixedFaceHandle<InnerTag>>) {
         let (mut ring, mut area) = (vec![], 0.0);
         let (mut at, mut before): (Edge<'_>, Option<DVec2>) = (edge, None);
         let mut first = None;
-        while !is_passed[at.fix().index()] {
-            is_passed[at.fix().index()] = true;
+        while !std::mem::replace(&mut self.is_passed[at.fix().index()], true) {
             let Some(face) = at.face().as_inner() else {
                 break;
             };
-            let third = owner(at.next().to().fix().index());
+            let third = self.owners[at.next().to().fix().index()];
             let centre = face.circumcenter();
             let centre = DVec2::new(centre.x, centre.y);
             let base = *first.get_or_insert(centre);
             area += before.map_or(0.0, |before| (before - base).perp_dot(centre - base));
             before = Some(centre);
-            let beyond = owner(at.to().fix().index());
+            let beyond = self.owners[at.to().fix().index()];
             // Where the outside is beyond, bends stay: the cell is cut off along the border afterwards.
-            let is_kept = beyond == OUTSIDE || is_bent[stone as usize] || is_bent[beyond as usize];
+            let is_kept =
+                beyond == OUTSIDE || self.is_bent[stone as usize] || self.is_bent[beyond as usize];
             if is_kept || (third != stone && third != beyond) {
                 ring.push(face.fix());
             }
-            at = if third == stone {
-                at.next().rev()
-            } else {
-                at.prev().rev()
+            at = match third == stone {
+                true => at.next().rev(),
+                false => at.prev().rev(),
             };
         }
-        // Of several loops the largest is the outline.
-        if area > rings[stone as usize].0 {
-            rings[stone as usize] = (area, ring);
-        }
+        (area, ring)
     }
-    rings.into_iter().map(|(_, ring)| ring).collect()
 }
 
 /// Numbers the triangles that rings pass as corners.

@@ -105,14 +105,14 @@ pub(crate) fn pack<E>(
     if plan.method == Method::PositionField && plan.corners != 5 {
         relaxation.relax(&mut packed, &mut |share| go_on(0.5 + 0.2 * share))?;
     }
-    let mut partition = cells(&bed, &packed);
+    let mut partition = cells(&bed, &packed, &mut || go_on(0.75))?;
     for _ in 0..MENDED {
         if !plan.mends || !mend(&ground, &partition, &mut packed, random) {
             break;
         }
         go_on(0.8)?;
         relaxation.relax(&mut packed, &mut |_| go_on(0.8))?;
-        partition = cells(&bed, &packed);
+        partition = cells(&bed, &packed, &mut || go_on(0.9))?;
     }
     plan.describe(&mut partition, &packed);
     Ok(partition)

@@ -7,6 +7,11 @@ use super::walls::Walls;
 use glam::DVec2;
 use rayon::prelude::*;
 
+mod clusters;
+mod levels;
+
+pub(crate) use clusters::stones;
+
 /// Samples to a row of stones.
 const DENSITY: f64 = 3.0;
 
@@ -284,117 +289,4 @@ impl Field<'_> {
             }
         }
     }
-
-    /// Gives each sample of a finer level the lattice of the one that stands for it.
-    fn inherit(&self, coarse: &Level, fine: &mut Level) {
-        let (columns, coarse_columns) = (fine.columns, coarse.columns);
-        fine.samples
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(index, slot)| {
-                let (x, y) = (index % columns, index / columns);
-                let above = &coarse.samples[y / 2 * coarse_columns + x / 2];
-                if let (Some(sample), Some(above)) = (slot, above) {
-                    let across = self.across(sample.point, above.point);
-                    sample.origin = above.origin + across;
-                    sample.origin = self.held(sample, sample.origin);
-                    sample.origin = self.nearest(sample, sample.point);
-                }
-            });
-    }
-}
-
-impl Level {
-    pub(crate) fn at(&self, x: i64, y: i64) -> Option<&Sample> {
-        let (columns, rows) = (self.columns as i64, self.rows as i64);
-        let (x, y) = if self.wraps {
-            (x.rem_euclid(columns), y.rem_euclid(rows))
-        } else {
-            (x, y)
-        };
-        let is_within = (0..columns).contains(&x) && (0..rows).contains(&y);
-        is_within.then(|| self.samples[(y * columns + x) as usize].as_ref())?
-    }
-
-    /// A level with half as many samples to a side.
-    fn coarser(&self) -> Level {
-        let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
-        let one = |index: usize| {
-            let (x, y) = (index % columns * 2, index / columns * 2);
-            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
-                let (x, y) = (x + dx, y + dy);
-                let is_within = x < self.columns && y < self.rows;
-                is_within.then(|| self.samples[y * self.columns + x])?
-            });
-            let there = four.iter().flatten();
-            let count = there.clone().map(|sample| sample.count).sum();
-            // The one that is held most says where the lattice is.
-            let best = there
-                .max_by_key(|it| it.walls.iter().filter(|wall| wall.0 != DVec2::ZERO).count())?;
-            Some(Sample { count, ..*best })
-        };
-        let samples = (0..columns * rows).into_par_iter().map(one).collect();
-        Level {
-            columns,
-            rows,
-            wraps: self.wraps,
-            samples,
-        }
-    }
-}
-
-/// Where stones lie: lattice points that many samples agree on, and how many do.
-pub(crate) fn stones(field: &Field<'_>, level: &Level) -> Vec<(DVec2, f64)> {
-    let mut parents: Vec<u32> = (0..level.samples.len() as u32).collect();
-    for index in 0..level.samples.len() {
-        let Some(sample) = &level.samples[index] else {
-            continue;
-        };
-        let (x, y) = (
-            (index % level.columns) as i64,
-            (index / level.columns) as i64,
-        );
-        for (dx, dy) in [(1, 0), (0, 1), (1, 1), (-1, 1)] {
-            let Some(other) = level.at(x + dx, y + dy) else {
-                continue;
-            };
-            let across = field.across(sample.point, other.point);
-            let near = 0.35 * sample.scale * field.lattice.step.min_element();
-            if (other.origin + across).distance_squared(sample.origin) < near * near {
-                let (x, y) = (x + dx, y + dy);
-                let (columns, rows) = (level.columns as i64, level.rows as i64);
-                let other = (y.rem_euclid(rows) * columns + x.rem_euclid(columns)) as u32;
-                let (a, b) = (root(&mut parents, index as u32), root(&mut parents, other));
-                parents[a.max(b) as usize] = a.min(b);
-            }
-        }
-    }
-    let mut sums = vec![(DVec2::ZERO, 0.0); level.samples.len()];
-    let mut order = vec![];
-    for index in 0..level.samples.len() {
-        let Some(sample) = &level.samples[index] else {
-            continue;
-        };
-        let first = root(&mut parents, index as u32) as usize;
-        if first == index {
-            order.push(index);
-        }
-        let base = level.samples[first].as_ref().expect("a root is a sample");
-        let across = field.across(base.point, sample.point);
-        sums[first].0 += sample.origin + across;
-        sums[first].1 += 1.0;
-    }
-    order
-        .into_iter()
-        .map(|index| (sums[index].0 / sums[index].1, sums[index].1))
-        .collect()
-}
-
-fn root(parents: &mut [u32], index: u32) -> u32 {
-    let mut index = index;
-    while parents[index as usize] != index {
-        parents[index as usize] = parents[parents[index as usize] as usize];
-        index = parents[index as usize];
-    }
-    index
 }

@@ -359,7 +359,8 @@ fn across(partition: &Partition, region: &Region) -> usize {
     };
     let before: Vec<f64> = pieces.iter().map(area).collect();
     let mut within = vec![0.0; pieces.len()];
-    for part in clip(pieces, region) {
+    let Ok(parts) = clip(pieces, region, &mut || Ok::<(), Infallible>(()));
+    for part in parts {
         if let Some(sum) = within.get_mut(part.id as usize) {
             *sum += area(&part);
         }

@@ -11,7 +11,7 @@ pub(crate) use area::{Measure, doubled_area, measure};
 pub(crate) use edges::Edges;
 pub(crate) use mend::{Fault, Nothing, Wrong, area, mend, rings_of};
 pub(crate) use overlay::{Lattice, Operation};
-pub(crate) use round::{flatten, round_corners, steps};
+pub(crate) use round::{Bent, arc_points, chorded, flatten, round_corners, steps};
 pub(crate) use window::cut_to_box;
 
 #[cfg(test)]

@@ -13,7 +13,8 @@ pub(crate) struct Bent {
 }
 
 impl Bent {
-    fn push(&mut self, corner: DVec2, bulge: f64, edge: usize) {
+    /// Adds a corner and how the edge behind it is bent.
+    pub(crate) fn push(&mut self, corner: DVec2, bulge: f64, edge: usize) {
         self.corners.push(corner);
         self.bulges.push(bulge);
         self.edges.push(edge);
@@ -81,16 +82,53 @@ pub(crate) fn flatten(bent: &Bent, tolerance: f64) -> Vec<DVec2> {
     flat
 }
 
-/// The points between the ends of an arc.
-fn add_arc(from: DVec2, to: DVec2, bulge: f64, tolerance: f64, flat: &mut Vec<DVec2>) {
-    let chord = to - from;
-    let centre = 0.5 * (from + to) + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
-    let angle = 4.0 * libm::atan(bulge);
-    let steps = steps((from - centre).length(), angle.abs(), tolerance);
-    for step in 1..steps {
-        let (sine, cosine) = libm::sincos(angle * f64::from(step) / f64::from(steps));
-        flat.push(centre + DVec2::new(cosine, sine).rotate(from - centre));
+/// A ring of straight edges that is nowhere farther from a bent one than `share` of the length of the arc beside it. An arc has the
+/// same chords, bit by bit, from both of its sides.
+pub(crate) fn chorded(corners: &[DVec2], bulges: &[f64], share: f64) -> Vec<DVec2> {
+    let mut flat = Vec::with_capacity(corners.len());
+    for (index, from) in corners.iter().enumerate() {
+        let to = corners[(index + 1) % corners.len()];
+        flat.push(*from);
+        let bulge = bulges.get(index).copied().unwrap_or_default();
+        if bulge == 0.0 {
+            continue;
+        }
+        let first = flat.len();
+        let is_forward = (from.x, from.y) < (to.x, to.y);
+        let (low, high, bend) = match is_forward {
+            true => (*from, to, bulge),
+            false => (to, *from, -bulge),
+        };
+        let angle = 4.0 * libm::atan(bulge.abs());
+        let parts = steps(1.0, angle, share * angle);
+        arc_points(low, high, bend, parts, &mut flat);
+        if !is_forward {
+            flat[first..].reverse();
+        }
     }
+    flat
+}
+
+/// The points between the ends of an arc as near as `tolerance` needs them.
+fn add_arc(from: DVec2, to: DVec2, bulge: f64, tolerance: f64, flat: &mut Vec<DVec2>) {
+    let angle = 4.0 * libm::atan(bulge);
+    let radius = (from - centre(from, to, bulge)).length();
+    arc_points(from, to, bulge, steps(radius, angle.abs(), tolerance), flat);
+}
+
+/// The points that divide an arc into so many equal parts.
+pub(crate) fn arc_points(from: DVec2, to: DVec2, bulge: f64, parts: u32, points: &mut Vec<DVec2>) {
+    let centre = centre(from, to, bulge);
+    let angle = 4.0 * libm::atan(bulge);
+    for step in 1..parts {
+        let (sine, cosine) = libm::sincos(angle * f64::from(step) / f64::from(parts));
+        points.push(centre + DVec2::new(cosine, sine).rotate(from - centre));
+    }
+}
+
+/// The centre of an arc's circle.
+fn centre(from: DVec2, to: DVec2, bulge: f64) -> DVec2 {
+    0.5 * (from + to) + (to - from).perp() * ((1.0 - bulge * bulge) / (4.0 * bulge))
 }
 
 /// How many straight edges stay within `tolerance` of an arc.
@@ -135,6 +173,23 @@ mod tests {
         assert!((1.999..2.0).contains(&middle.distance(centre)));
         let area = doubled_area(&flat) / 2.0;
         assert!(area < 4.0 * PI && area > 4.0 * PI - 4.0 * PI * 1e-3);
+    }
+
+    #[test]
+    fn an_arc_has_the_same_chords_from_both_sides() {
+        let ends = [DVec2::new(0.1, 0.7), DVec2::new(-3.3, 5.9)];
+        let forward = chorded(&ends, &[0.37, 0.0], 1e-3);
+        let backward = chorded(&[ends[1], ends[0]], &[-0.37, 0.0], 1e-3);
+        assert!(forward.len() > 8);
+        let count = forward.len();
+        let reversed: Vec<DVec2> = backward[1..count - 1].iter().rev().copied().collect();
+        assert_eq!(forward[1..count - 1], reversed);
+        // What the chords leave out of the segment is their share of the arc's length at most.
+        let whole = measure(&ends, &[0.37, 0.0]).area;
+        let length =
+            4.0 * libm::atan(0.37) * (1.0 + 0.37 * 0.37) / (4.0 * 0.37) * ends[0].distance(ends[1]);
+        let left_out = whole - doubled_area(&forward) / 2.0;
+        assert!(left_out > 0.0 && left_out < 1e-3 * length * length);
     }
 
     #[test]

@@ -7,11 +7,13 @@
 mod cells;
 mod clip;
 mod corners;
+mod laplace;
 mod order;
 mod periodic;
 mod power;
 mod triangulation;
 
+pub(crate) use laplace::{Link, potentials};
 pub(crate) use power::power_cells;
 
 use crate::value::Partition;

@@ -2,19 +2,21 @@
 
 use super::ground::Ground;
 use crate::geometry::assemble::{Piece, assemble, clip_from, merge_slivers, pieces_of};
-use crate::geometry::polygon::Edges;
+use crate::geometry::polygon::{Edges, chorded};
 use crate::node::{Build, Failure, Input, Inputs};
 use crate::value::{Partition, Polygon, Region, Type, Unit};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// The partition whose cells are divided.
 pub(super) const WITHIN: Input = Input::new(
     "within",
     Type::Partition,
     "Each cell of this partition is divided for itself, and its border stays; instead of a `region`, a `size` or a \
-     `period`. Cells get an attribute `parent`, the id of the cell they are in.",
+     `period`. Cells get an attribute `parent`, the id of the cell they are in. Of arcs the border is chords, no farther off than \
+     1/10000 of the arc's length and the same from both sides.",
 )
 .optional();
 
@@ -29,6 +31,10 @@ pub(super) const MERGE_BELOW: Input = Input::number(
 
 /// Corners nearer than this share of the extent become one.
 const TOLERANCE: f64 = 1e-8;
+
+/// How far from an arc the chords may be along which a cell is divided, as a share of the arc's length: parts of neighbours can
+/// meet in a T on a chord, but not on an arc.
+const CHORD: f64 = 1e-4;
 
 /// Something that is divided for itself.
 pub(super) struct Plot {
@@ -55,7 +61,7 @@ impl Plot {
     /// What the inputs state: a region, a rectangle, a rectangle that repeats, or the cells of a partition.
     ///
     /// # Errors
-    /// Unless exactly one is stated, or if a cell has bent edges.
+    /// Unless exactly one is stated.
     pub(super) fn all(inputs: &Inputs<'_>) -> Result<Vec<Plot>, Failure> {
         if inputs.get("within").is_none() {
             let ground = Ground::read(inputs)?;
@@ -75,21 +81,17 @@ impl Plot {
             return Err(Failure::of_input("within", message).with_hint("keep one of them"));
         }
         let cells = inputs.partition("within");
-        if !cells.bulges.is_empty() {
-            let message =
-                "the cells have bent edges, and only those with straight ones can be divided";
-            return Err(Failure::of_input("within", message)
-                .with_hint("divide the cells before their corners are rounded"));
-        }
         Ok((0..cells.len())
             .map(|cell| Plot::of_cell(cells, cell))
             .collect())
     }
 
     fn of_cell(cells: &Partition, cell: usize) -> Plot {
-        let mut rings = cells
-            .rings_of(cell)
-            .map(|ring| cells.corners[ring].to_vec());
+        let flat = |ring: Range<usize>| {
+            let bulges = cells.bulges.get(ring.clone()).unwrap_or_default();
+            chorded(&cells.corners[ring], bulges, CHORD)
+        };
+        let mut rings = cells.rings_of(cell).map(flat);
         let polygon = Polygon {
             outline: rings.next().unwrap_or_default(),
             holes: rings.collect(),
@@ -145,20 +147,23 @@ impl Plot {
     }
 
     /// Cuts off what of the pieces lies outside.
-    pub(super) fn clip(&self, pieces: Pieces) -> Pieces {
+    ///
+    /// # Errors
+    /// If the run was cancelled.
+    pub(super) fn clip(&self, pieces: Pieces, build: &Build<'_>) -> Result<Pieces, Failure> {
         if pieces.fit || self.period.is_some() {
-            return pieces;
+            return Ok(pieces);
         }
-        let (parts, origins) = clip_from(pieces.pieces, &self.region);
+        let (parts, origins) = clip_from(pieces.pieces, &self.region, &mut || build.go_on())?;
         let values = pieces.values.into_iter().map(|(name, values)| {
             let of_parts = origins.iter().map(|origin| values[*origin]).collect();
             (name, of_parts)
         });
-        Pieces {
+        Ok(Pieces {
             values: values.collect(),
             pieces: parts,
             fit: true,
-        }
+        })
     }
 }
 
@@ -172,32 +177,44 @@ pub(super) fn divided(
     plots: &[Plot],
     divide: &(dyn Fn(&Plot) -> Result<Pieces, Failure> + Sync),
 ) -> Result<Partition, Failure> {
+    if let [ground] = plots
+        && ground.parent.is_none()
+    {
+        return covered(inputs, build, ground, divide(ground)?);
+    }
     let share = inputs.number("merge_below");
     let parts = plots.par_iter().map(|plot| {
         build.go_on()?;
-        let pieces = plot.clip(divide(plot)?);
-        Ok(match plot.parent {
-            Some(_) => as_pieces(cells(pieces, plot, plot.tolerance(), share).0),
-            None => pieces,
-        })
+        let pieces = plot.clip(divide(plot)?, build)?;
+        Ok(as_pieces(cells(pieces, plot, share, build)?.0))
     });
     let parts: Vec<Pieces> = parts.collect::<Result<_, Failure>>()?;
     build.go_on()?;
-    let partition = match plots {
-        [ground] if ground.parent.is_none() => {
-            let pieces = parts.into_iter().next().unwrap_or_default();
-            let (partition, joined) = cells(pieces, ground, ground.tolerance(), share);
-            warn_of_joined(inputs, joined);
-            partition
-        }
-        _ => united(parts, plots),
-    };
-    build.go_on()?;
-    if partition.is_empty() {
-        return Err(Failure::new("no cell is left")
-            .with_hint("divide a larger area, or into smaller cells"));
+    some(united(parts, plots, build)?)
+}
+
+/// The cells of a ground that pieces cover.
+///
+/// # Errors
+/// If no cell is left, or the run was cancelled.
+pub(super) fn covered(
+    inputs: &Inputs<'_>,
+    build: &Build<'_>,
+    ground: &Plot,
+    pieces: Pieces,
+) -> Result<Partition, Failure> {
+    let pieces = ground.clip(pieces, build)?;
+    let (partition, joined) = cells(pieces, ground, inputs.number("merge_below"), build)?;
+    warn_of_joined(inputs, joined);
+    some(partition)
+}
+
+fn some(partition: Partition) -> Result<Partition, Failure> {
+    match partition.is_empty() {
+        false => Ok(partition),
+        true => Err(Failure::new("no cell is left")
+            .with_hint("divide a larger area, or into smaller cells")),
     }
-    Ok(partition)
 }
 
 /// Says how many cells were joined to others.
@@ -208,20 +225,46 @@ pub(super) fn warn_of_joined(inputs: &Inputs<'_>, joined: usize) {
 }
 
 /// The cells of one plot, small ones joined, and how many that were.
-fn cells(pieces: Pieces, plot: &Plot, tolerance: f64, share: f64) -> (Partition, usize) {
+fn cells(
+    pieces: Pieces,
+    plot: &Plot,
+    share: f64,
+    build: &Build<'_>,
+) -> Result<(Partition, usize), Failure> {
+    let partition = assembled(pieces, plot.period, plot.tolerance(), build)?;
+    join_slivers(partition, share, build)
+}
+
+/// The cells that pieces become, with their values as attributes.
+///
+/// # Errors
+/// If the run was cancelled.
+pub(super) fn assembled(
+    pieces: Pieces,
+    period: Option<DVec2>,
+    tolerance: f64,
+    build: &Build<'_>,
+) -> Result<Partition, Failure> {
     let ids: Vec<u32> = pieces.pieces.iter().map(|piece| piece.id).collect();
-    let mut partition = assemble(pieces.pieces, plot.period, tolerance);
+    let mut partition = assemble(pieces.pieces, period, tolerance, &mut || build.go_on())?;
     name_values(&mut partition, &ids, pieces.values);
-    join_slivers(partition, share)
+    Ok(partition)
 }
 
 /// Joins cells with less than a share of the mean area to neighbours.
-pub(super) fn join_slivers(partition: Partition, share: f64) -> (Partition, usize) {
+///
+/// # Errors
+/// If the run was cancelled.
+pub(super) fn join_slivers(
+    partition: Partition,
+    share: f64,
+    build: &Build<'_>,
+) -> Result<(Partition, usize), Failure> {
     if share == 0.0 || partition.is_empty() {
-        return (partition, 0);
+        return Ok((partition, 0));
     }
     let mean = partition.areas.iter().sum::<f64>() / partition.len() as f64;
-    merge_slivers(&partition, share * mean)
+    merge_slivers(&partition, share * mean, &mut || build.go_on())
 }
 
 /// Gives cells the values of the pieces with the same ids.
@@ -258,7 +301,7 @@ fn as_pieces(partition: Partition) -> Pieces {
 const NAMES: [&str; 5] = ["row", "column", "course", "length", "depth"];
 
 /// The cells of all plots, numbered anew.
-fn united(parts: Vec<Pieces>, plots: &[Plot]) -> Partition {
+fn united(parts: Vec<Pieces>, plots: &[Plot], build: &Build<'_>) -> Result<Partition, Failure> {
     let mut all = Pieces::default();
     for (part, plot) in parts.into_iter().zip(plots) {
         let first = all.pieces.len();
@@ -283,14 +326,8 @@ fn united(parts: Vec<Pieces>, plots: &[Plot]) -> Partition {
         .for_each(|list| list.resize(count, 0.0));
     let corners = plots.iter().flat_map(Plot::bounds);
     let [low, high] = around(corners);
-    let whole = Plot {
-        region: Region { polygons: vec![] },
-        period: None,
-        origin: low,
-        frame: DVec2::X,
-        parent: None,
-    };
-    cells(all, &whole, TOLERANCE * (high - low).max_element(), 0.0).0
+    let tolerance = TOLERANCE * (high - low).max_element();
+    assembled(all, None, tolerance, build)
 }
 
 fn bounds(region: &Region) -> [DVec2; 2] {

@@ -1,16 +1,19 @@
 //! `inset_cells`: cells with joints between them, and rounded corners.
 //!
 //! Each edge moves inwards by half of the joint, so stones never overlap. A joint has one width as seen from both sides,
-//! unless it differs by the cell. Edges of a cell that lie in one line move together, by the largest of their distances. Cells keep ids,
-//! frames, attributes and the neighbours beyond the joint.
+//! unless it differs by the cell. Edges of a cell that lie in one line move together, by the largest of their distances, and in
+//! cells with arcs all edges that run on smoothly; an arc keeps its centre, and its radius changes. Cells keep ids, frames,
+//! attributes and the neighbours beyond the joint. Of a cell that falls apart the largest part is kept, and a warning
+//! counts such cells.
 
-use crate::geometry::inset::{Left, inset};
+use crate::geometry::inset::{Contour, Left, Remains, inset};
 use crate::geometry::polygon::{Measure, measure};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::random::Random;
 use crate::value::{Domain, Partition, Type, Unit, Value};
 use glam::DVec2;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Cells with joints between them.
@@ -19,7 +22,8 @@ pub static KIND: Kind = Kind {
     version: 1,
     about: "Makes cells smaller, so that joints are between them, and rounds their corners by exact arcs. Joints may vary at \
             random, by edge or by cell, or along a field.",
-    source: "own construction: convex cells cut by the moved edges (Sutherland & Hodgman 1974), others by boolean operations",
+    source: "own construction: convex cells cut by the moved edges (Sutherland & Hodgman 1974), others by boolean operations; \
+             of cells with arcs these only say what is left, and where it ends follows from the moved lines and circles",
     inputs: &[
         Input::new("of", Type::Partition, "The cells."),
         Input::number("joint", Unit::Millimetre, "Width of the joint, asked for in the middle of each edge.")
@@ -60,21 +64,7 @@ pub static KIND: Kind = Kind {
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let cells = inputs.partition("of");
-    if !cells.bulges.is_empty() {
-        let failure = Failure::of_input("of", "the cells have bent edges");
-        return Err(failure.with_hint(
-            "inset them before their corners are rounded; one `inset_cells` does both",
-        ));
-    }
-    for name in ["vary", "round_vary"] {
-        let [low, high] = inputs.pair(name);
-        if low > high {
-            let message = format!("`{name}` goes from {low} to {high}");
-            return Err(
-                Failure::of_input(name, message).with_hint("state the smaller factor first")
-            );
-        }
-    }
+    check_ranges(inputs)?;
     let offs = offs(inputs, build, cells)?;
     let random = Random::new(build.seed, "inset_cells radius", inputs.whole("seed"));
     let (round, vary) = (inputs.number("round"), inputs.pair("round_vary"));
@@ -91,24 +81,51 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         })
         .collect();
     build.go_on()?;
+    warn_of_rest(inputs, &rest)?;
+    Ok(vec![Value::Partition(Arc::new(collected(cells, rest)))])
+}
+
+/// Refuses ranges that are none.
+fn check_ranges(inputs: &Inputs<'_>) -> Result<(), Failure> {
+    for name in ["vary", "round_vary"] {
+        let [low, high] = inputs.pair(name);
+        if low > high {
+            let message = format!("`{name}` goes from {low} to {high}");
+            return Err(
+                Failure::of_input(name, message).with_hint("state the smaller factor first")
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Says how many cells vanish or fall apart, and refuses that all vanish.
+fn warn_of_rest(inputs: &Inputs<'_>, rest: &[Option<Rest>]) -> Result<(), Failure> {
     let vanished = rest.iter().filter(|rest| rest.is_none()).count();
-    if vanished == cells.len() {
+    let apart = rest.iter().flatten().filter(|rest| rest.parts > 1).count();
+    let all = rest.len();
+    if vanished == all {
         return Err(Failure::of_input("joint", "nothing is left of any cell")
             .with_hint("make the joints narrower"));
     }
     if vanished > 0 {
+        let message = format!("{vanished} of {all} cells vanish between their joints");
+        inputs.warn(message);
+    }
+    if apart > 0 {
         inputs.warn(format!(
-            "{vanished} of {} cells vanish between their joints",
-            cells.len()
+            "{apart} of {all} cells fall apart between their joints: the largest part of each is kept"
         ));
     }
-    Ok(vec![Value::Partition(Arc::new(collected(cells, rest)))])
+    Ok(())
 }
 
 /// How far each edge moves inwards.
 fn offs(inputs: &Inputs<'_>, build: &Build<'_>, cells: &Partition) -> Result<Vec<f64>, Failure> {
     let middles = edges(cells).map(|(_, corner, next)| {
-        let middle = 0.5 * (cells.corners[corner] + cells.corners[next]);
+        let [from, to] = [corner, next].map(|end| cells.corners[end]);
+        let aside = (from - to).perp() * (0.5 * cells.bulge(corner));
+        let middle = 0.5 * (from + to) + aside;
         // Both sides of an edge that repeats are asked at one place.
         cells
             .period
@@ -154,22 +171,27 @@ fn edges(cells: &Partition) -> impl Iterator<Item = (usize, usize, usize)> {
 /// What is left of a cell.
 struct Rest {
     rings: Vec<Left>,
+    parts: usize,
     whole: Measure,
     centre: DVec2,
 }
 
 fn left_of(cells: &Partition, cell: usize, offs: &[f64], radius: f64) -> Option<Rest> {
-    let rings: Vec<&[DVec2]> = cells
-        .rings_of(cell)
-        .map(|ring| &cells.corners[ring])
-        .collect();
+    let contour = |ring: Range<usize>| Contour {
+        bulges: cells.bulges.get(ring.clone()).unwrap_or_default(),
+        corners: &cells.corners[ring],
+    };
+    let rings: Vec<Contour<'_>> = cells.rings_of(cell).map(contour).collect();
     let first = cells.rings_of(cell).next()?.start;
     let last = cells.rings_of(cell).last()?.end;
-    let mut left = inset(&rings, &offs[first..last], radius);
+    let Remains {
+        rings: mut left,
+        parts,
+    } = inset(&rings, &offs[first..last], radius);
     let measured = |rings: &mut dyn Iterator<Item = Measure>| {
         rings.fold(Measure::default(), |sum, ring| sum + ring)
     };
-    let before = measured(&mut rings.iter().map(|ring| measure(ring, &[])));
+    let before = measured(&mut rings.iter().map(|ring| measure(ring.corners, ring.bulges)));
     let whole = measured(&mut left.iter().map(|ring| measure(&ring.corners, &ring.bulges)));
     left.iter_mut()
         .flat_map(|ring| &mut ring.edges)
@@ -180,6 +202,7 @@ fn left_of(cells: &Partition, cell: usize, offs: &[f64], radius: f64) -> Option<
     Some(Rest {
         centre: if is_own { middle } else { whole.centre() },
         rings: left,
+        parts,
         whole,
     })
 }

@@ -36,8 +36,8 @@ pub static KIND: Kind = Kind {
 /// Shorter than this, relative to the moments themselves, the difference of two moments is chance.
 const ROUND: f64 = 1e-9;
 
-fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
-    let cells = cells(inputs.region("of"));
+fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
+    let cells = cells(inputs.region("of"), build)?;
     match cells.is_empty() {
         true => Err(Failure::of_input(
             "of",
@@ -48,7 +48,10 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
 }
 
 /// The polygons of a region as cells.
-pub(in crate::nodes) fn cells(region: &Region) -> Partition {
+///
+/// # Errors
+/// If the run was cancelled.
+pub(in crate::nodes) fn cells(region: &Region, build: &Build<'_>) -> Result<Partition, Failure> {
     let polygons = region.polygons.iter().enumerate();
     let pieces = polygons.map(|(id, polygon)| Piece {
         rings: polygon
@@ -59,7 +62,7 @@ pub(in crate::nodes) fn cells(region: &Region) -> Partition {
         frame: longest(polygon),
         centre: None,
     });
-    assemble(pieces.collect(), None, 0.0)
+    assemble(pieces.collect(), None, 0.0, &mut || build.go_on())
 }
 
 /// The direction in which a polygon is longest; along x if there is none.

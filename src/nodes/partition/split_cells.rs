@@ -10,7 +10,7 @@ mod recursive;
 mod rows;
 mod woven;
 
-use super::division::{MERGE_BELOW, Pieces, Plot, WITHIN, divided};
+use super::division::{MERGE_BELOW, Pieces, Plot, WITHIN, covered, divided};
 use super::ground::{PERIOD, REGION, SIZE};
 use crate::geometry::assemble::{Piece, Ring};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
@@ -19,7 +19,6 @@ use crate::value::{Type, Unit, Value};
 use glam::DVec2;
 use ground::{Axes, Laid, Tile, Window};
 use std::sync::Arc;
-use std::sync::Mutex;
 
 /// Cells in patterns.
 pub static KIND: Kind = Kind {
@@ -52,6 +51,13 @@ pub static KIND: Kind = Kind {
             "lengths",
             Type::Pair(Unit::One),
             "In `rows`, the length of each board is drawn from this range of shares of `length`.",
+        )
+        .default("(1, 1)")
+        .range(0.05, 20.0),
+        Input::new(
+            "widths",
+            Type::Pair(Unit::One),
+            "In `rows`, the width of each row is drawn from this range of shares of `width`.",
         )
         .default("(1, 1)")
         .range(0.05, 20.0),
@@ -117,23 +123,27 @@ const MOST: f64 = 4e6;
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let plots = Plot::all(inputs)?;
     let random = Random::new(build.seed, KIND.name, inputs.whole("seed"));
-    let stretch = Mutex::new(DVec2::ONE);
-    let divide = |plot: &Plot| {
+    let laid = |plot: &Plot| {
         let stream = random.of_item(plot.parent.unwrap_or_default());
         let axes = axes(inputs, plot)?;
         let window = Window::new(plot, &axes);
         let laid = lay(inputs, plot, &window, stream, &mut || build.go_on())?;
-        if plot.parent.is_none() {
-            *stretch
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner) = laid.stretch;
-        }
-        Ok(placed(laid, &axes))
+        Ok((laid.stretch, placed(laid, &axes)))
     };
-    let cells = divided(inputs, build, &plots, &divide)?;
-    let stretch = *stretch
-        .lock()
-        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let cells = match &plots[..] {
+        [ground] if ground.parent.is_none() => {
+            let (stretch, pieces) = laid(ground)?;
+            let cells = covered(inputs, build, ground, pieces)?;
+            warn_of_stretch(inputs, stretch);
+            cells
+        }
+        _ => divided(inputs, build, &plots, &|plot| Ok(laid(plot)?.1))?,
+    };
+    Ok(vec![Value::Partition(Arc::new(cells))])
+}
+
+/// Says by how much the pattern was stretched.
+fn warn_of_stretch(inputs: &Inputs<'_>, stretch: DVec2) {
     if (stretch - 1.0).abs().max_element() > 1e-6 {
         inputs.warn(format!(
             "the pattern was made {:.2} % longer and {:.2} % wider, so that it closes",
@@ -141,7 +151,6 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
             100.0 * (stretch.y - 1.0)
         ));
     }
-    Ok(vec![Value::Partition(Arc::new(cells))])
 }
 
 /// Where the pattern begins and how it is turned.
@@ -167,14 +176,11 @@ fn axes(inputs: &Inputs<'_>, plot: &Plot) -> Result<Axes, Failure> {
     })
 }
 
-/// Lays the pattern over a window.
-fn lay(
-    inputs: &Inputs<'_>,
-    plot: &Plot,
-    window: &Window,
-    random: Random,
-    go_on: &mut dyn FnMut() -> Result<(), Failure>,
-) -> Result<Laid, Failure> {
+/// Length and width of a board.
+///
+/// # Errors
+/// If the pattern needs a length, or there would be too many boards in the window.
+fn board(inputs: &Inputs<'_>, window: &Window) -> Result<DVec2, Failure> {
     let pattern = inputs.choice("pattern");
     let width = inputs.number("width");
     let is_square = matches!(pattern, "hexagons" | "recursive");
@@ -191,32 +197,38 @@ fn lay(
         let message = format!("expected at most {MOST} cells, found more");
         return Err(Failure::of_input("width", message).with_hint("choose larger cells"));
     }
-    let board = DVec2::new(length, width);
-    match pattern {
+    Ok(DVec2::new(length, width))
+}
+
+/// Lays the pattern over a window.
+fn lay(
+    inputs: &Inputs<'_>,
+    plot: &Plot,
+    window: &Window,
+    random: Random,
+    go_on: &mut dyn FnMut() -> Result<(), Failure>,
+) -> Result<Laid, Failure> {
+    let board = board(inputs, window)?;
+    match inputs.choice("pattern") {
         "rows" => rows::lay(window, board, rows::Rows::read(inputs)?, random, go_on),
         "grid" => rows::lay(window, board, rows::Rows::grid(), random, go_on),
         "herringbone" => woven::herringbone(window, board, 1),
         "double_herringbone" => woven::herringbone(window, board, 2),
         "basket" => woven::basket(window, board),
-        "chevron" => Ok(woven::chevron(
-            window,
-            board,
-            inputs.number("slope").to_radians(),
-        )),
+        "chevron" => {
+            let slope = inputs.number("slope").to_radians();
+            Ok(woven::chevron(window, board, slope))
+        }
         "fan" => {
-            let lane = inputs
-                .get("lane")
-                .map_or(12.0 * length, |_| inputs.number("lane"));
+            let lane = inputs.get("lane");
+            let lane = lane.map_or(12.0 * board.x, |_| inputs.number("lane"));
             Ok(fan::lay(window, board, lane, inputs.number("rise"), plot))
         }
-        "hexagons" => Ok(hexagons::lay(window, width)),
-        _ => recursive::lay(
-            plot,
-            window,
-            recursive::Splits::read(inputs)?,
-            random,
-            go_on,
-        ),
+        "hexagons" => Ok(hexagons::lay(window, board.y)),
+        _ => {
+            let splits = recursive::Splits::read(inputs)?;
+            recursive::lay(plot, window, splits, random, go_on)
+        }
     }
 }
 

@@ -116,14 +116,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let ground = Ground::read(inputs)?;
     let shape = Shape::read(inputs)?;
     let guide = guide(inputs, build, &ground, &shape)?;
-    let spread = inputs.pair("spread");
-    if spread[0] > spread[1] {
-        let message = format!(
-            "expected the smaller number first, found ({}, {})",
-            spread[0], spread[1]
-        );
-        return Err(Failure::of_input("spread", message));
-    }
+    let spread = spread(inputs)?;
     let method = method(inputs);
     let mends = match inputs.get("mend") {
         Some(_) => inputs.toggle("mend"),
@@ -148,6 +141,18 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         build.go_on()
     })?;
     checked(partition)
+}
+
+/// The range of the sizes.
+fn spread(inputs: &Inputs<'_>) -> Result<[f64; 2], Failure> {
+    let [low, high] = inputs.pair("spread");
+    match low <= high {
+        true => Ok([low, high]),
+        false => {
+            let message = format!("expected the smaller number first, found ({low}, {high})");
+            Err(Failure::of_input("spread", message))
+        }
+    }
 }
 
 fn checked(partition: Partition) -> Result<Vec<Value>, Failure> {

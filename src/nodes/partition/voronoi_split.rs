@@ -8,17 +8,23 @@
 //!
 //! which is the square of the length of a tangent to the circle of radius r around the seed (Aurenhammer 1987): seeds with
 //! larger circles have larger cells. Relaxation moves each seed to the centre of gravity of its cell (Lloyd 1982), which
-//! makes cells alike in size and round.
+//! makes cells alike in size and round; with a density, to the centre of gravity of the density's square, which keeps seeds as
+//! dense as it says. With stated areas the weights are those with which each cell has its share.
 
+mod capacity;
+mod density;
 mod seeds;
 
-use super::division::{MERGE_BELOW, Pieces, Plot, WITHIN, divided, join_slivers, warn_of_joined};
+use super::division::{
+    MERGE_BELOW, Pieces, Plot, WITHIN, assembled, covered, divided, join_slivers, warn_of_joined,
+};
 use super::ground::{PERIOD, REGION, SIZE};
 use crate::geometry::assemble::{Piece, assemble, pieces_of};
 use crate::geometry::voronoi::{Bounds, power_cells, voronoi};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::random::Random;
-use crate::value::{Partition, Type, Unit, Value};
+use crate::value::{Domain, Partition, Type, Unit, Value};
+use density::Density;
 use seeds::{Layout, Seeds};
 use std::sync::Arc;
 
@@ -28,7 +34,8 @@ pub static KIND: Kind = Kind {
     version: 1,
     about: "Divides a region, a rectangle, a plane that repeats, or each cell of a partition into the cells of seeds: each \
             holds what is nearest to its seed.",
-    source: "Voronoi cells from the Delaunay triangulation; power cells: Aurenhammer 1987; relaxation: Lloyd 1982",
+    source: "Voronoi cells from the Delaunay triangulation; power cells: Aurenhammer 1987; relaxation: Lloyd 1982; \
+             stated areas: Kitagawa, Merigot & Thibert 2019",
     inputs: &[
         REGION,
         SIZE,
@@ -79,6 +86,22 @@ pub static KIND: Kind = Kind {
         )
         .optional()
         .range(0.0, 1e9),
+        Input::new(
+            "areas",
+            Type::Pair(Unit::One),
+            "Instead: areas of cells, drawn from this range, in areas of a mean cell. Each cell has its share of the whole.",
+        )
+        .optional()
+        .range(0.01, 100.0),
+        Input::number(
+            "density",
+            Unit::One,
+            "How dense seeds are, in any unit: random ones are drawn like that, and relaxation keeps them so.",
+        )
+        .per_point()
+        .of(Domain::Plane)
+        .optional()
+        .range(0.0, 1e6),
         MERGE_BELOW.default("0.1"),
         Input::new("seed", Type::Whole, "Other seeds, other cells.").default("0"),
     ],
@@ -96,30 +119,41 @@ struct Split {
     cells: Partition,
     /// Seeds at places of others, beyond the ground, and hidden behind heavier ones.
     lost: [usize; 3],
+    /// By how much the worst area is off.
+    off: f64,
 }
+
+/// How far areas may be off, as a share, while seeds move and in the end; and before a warning says so.
+const LOOSE: f64 = 0.01;
+const CLOSE: f64 = 1e-7;
+const OFF: f64 = 1e-4;
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let layout = Layout::read(inputs)?;
     let plots = Plot::all(inputs)?;
+    let density = Density::read(inputs, build);
     let random = Random::new(build.seed, KIND.name, inputs.whole("seed"));
+    let split = |plot: &Plot, seeds: Seeds| split(plot, seeds, &layout, &density, build);
     let mut cells = match &plots[..] {
         [ground] if ground.parent.is_none() => {
-            let seeds = layout.seeds(ground, random.of_item(0))?;
+            let seeds = layout.seeds(ground, &density, random.of_item(0))?;
             warn_of_size(inputs, &seeds);
-            let split = split(ground, seeds, &layout, build)?;
+            let split = split(ground, seeds)?;
             warn_of_lost(inputs, split.lost);
+            warn_of_areas(inputs, split.off);
             if ground.is_rectangle() && !split.cells.is_empty() {
-                let (cells, joined) = join_slivers(split.cells, inputs.number("merge_below"));
+                let share = inputs.number("merge_below");
+                let (cells, joined) = join_slivers(split.cells, share, build)?;
                 warn_of_joined(inputs, joined);
                 cells
             } else {
-                divided(inputs, build, &plots, &|_| Ok(pieces(&split.cells)))?
+                covered(inputs, build, ground, pieces(pieces_of(&split.cells)))?
             }
         }
         _ => divided(inputs, build, &plots, &|plot| {
             let stream = random.of_item(plot.parent.unwrap_or_default());
-            let split = split(plot, layout.seeds(plot, stream)?, &layout, build)?;
-            Ok(pieces(&split.cells))
+            let split = split(plot, layout.seeds(plot, &density, stream)?)?;
+            Ok(pieces(pieces_of(&split.cells)))
         })?,
     };
     let sizes = cells.areas.iter().map(|area| area.sqrt()).collect();
@@ -127,9 +161,8 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     Ok(vec![Value::Partition(Arc::new(cells))])
 }
 
-/// The cells as pieces, whose centres are to be those of what is left of them.
-fn pieces(cells: &Partition) -> Pieces {
-    let mut pieces = pieces_of(cells);
+/// The pieces, whose centres are to be those of what is left of them.
+fn pieces(mut pieces: Vec<Piece>) -> Pieces {
     pieces.iter_mut().for_each(|piece| piece.centre = None);
     Pieces {
         pieces,
@@ -138,56 +171,78 @@ fn pieces(cells: &Partition) -> Pieces {
 }
 
 /// The cells of seeds in the rectangle around a plot, after relaxation.
-fn split(plot: &Plot, seeds: Seeds, layout: &Layout, build: &Build<'_>) -> Result<Split, Failure> {
-    let mut seeds = seeds;
+fn split(
+    plot: &Plot,
+    mut seeds: Seeds,
+    layout: &Layout,
+    density: &Density<'_>,
+    build: &Build<'_>,
+) -> Result<Split, Failure> {
     for _ in 0..layout.relax {
-        let split = cells_of(plot, &seeds, build)?;
+        let split = cells_of(plot, &mut seeds, LOOSE, build)?;
         let last = split.cells.ids.last().copied().unwrap_or_default();
         let inside = match plot.is_rectangle() {
             true => split.cells,
             false => {
-                let clipped = plot.clip(pieces(&split.cells));
-                assemble(clipped.pieces, plot.period, plot.tolerance())
+                let clipped = plot.clip(pieces(pieces_of(&split.cells)), build)?;
+                assembled(clipped, plot.period, plot.tolerance(), build)?
             }
         };
         // Parts that were cut off have ids behind those of the seeds with cells.
-        for (id, centre) in inside.ids.iter().zip(&inside.centres) {
+        for (id, middle) in inside.ids.iter().zip(density.middles(&inside)?) {
             if *id <= last {
-                seeds.places[*id as usize] = *centre;
+                seeds.places[*id as usize] = middle;
             }
         }
     }
-    cells_of(plot, &seeds, build)
+    cells_of(plot, &mut seeds, CLOSE, build)
 }
 
-/// The cells of seeds in the rectangle around a plot.
-fn cells_of(plot: &Plot, seeds: &Seeds, build: &Build<'_>) -> Result<Split, Failure> {
+/// The rectangle around a plot.
+fn bounds(plot: &Plot) -> Bounds {
     let [low, high] = plot.bounds();
-    let bounds = Bounds {
+    Bounds {
         low,
         high,
         repeats: plot.period.is_some(),
-    };
+    }
+}
+
+/// The cells of seeds in the rectangle around a plot, with areas in the ratio of their shares up to `tolerance`.
+fn cells_of(
+    plot: &Plot,
+    seeds: &mut Seeds,
+    tolerance: f64,
+    build: &Build<'_>,
+) -> Result<Split, Failure> {
+    let mut off = 0.0;
+    if !seeds.shares.is_empty() {
+        let found = capacity::weights(plot, &seeds.places, &seeds.shares, tolerance, build)?;
+        (seeds.weights, off) = (found.weights, found.off);
+    }
     let mut go_on = || build.go_on();
     if seeds.weights.is_empty() {
-        let found = voronoi(&seeds.places, bounds, &mut go_on)?;
+        let found = voronoi(&seeds.places, bounds(plot), &mut go_on)?;
         return Ok(match found {
             Some(found) => Split {
                 lost: [found.equal, found.outside, 0],
                 cells: found.partition,
+                off,
             },
             None => Split {
                 cells: Partition::default(),
                 lost: [0, seeds.places.len(), 0],
+                off,
             },
         });
     }
-    let pieces: Vec<Piece> = power_cells(&seeds.places, &seeds.weights, bounds, &mut go_on)?;
+    let pieces = power_cells(&seeds.places, &seeds.weights, bounds(plot), &mut go_on)?;
     let hidden = seeds.places.len() - pieces.len();
-    let cells = assemble(pieces, plot.period, plot.tolerance());
+    let cells = assemble(pieces, plot.period, plot.tolerance(), &mut go_on)?;
     Ok(Split {
         cells,
         lost: [0, 0, hidden],
+        off,
     })
 }
 
@@ -217,5 +272,15 @@ fn warn_of_lost(inputs: &Inputs<'_>, [equal, outside, hidden]: [usize; 3]) {
     }
     if hidden > 0 && inputs.get("points").is_some() {
         inputs.warn(format!("{hidden} seeds have no cell beside heavier ones"));
+    }
+}
+
+/// Says how far areas are off.
+fn warn_of_areas(inputs: &Inputs<'_>, off: f64) {
+    if off > OFF {
+        let percent = 100.0 * off;
+        inputs.warn(format!(
+            "areas are up to {percent:.2} % off from what they should be"
+        ));
     }
 }

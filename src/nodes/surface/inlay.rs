@@ -196,11 +196,10 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure> {
     let stated = ["region", "cells"].map(|name| inputs.get(name).is_some());
     match stated {
-        [true, false] => Ok(of_cells(
-            &Arc::new(cells(inputs.region("region"))),
-            inputs,
-            build,
-        )),
+        [true, false] => {
+            let cells = cells(inputs.region("region"), build)?;
+            Ok(of_cells(&Arc::new(cells), inputs, build))
+        }
         [false, true] => Ok(of_cells(inputs.partition("cells"), inputs, build)),
         [true, true] => {
             let message = "both a `region` and `cells` are stated";

@@ -1,6 +1,7 @@
 //! Where seeds are: anywhere, on lattices, or as given.
 
 use super::super::division::Plot;
+use super::density::Density;
 use crate::node::{Failure, Inputs};
 use crate::nodes::random::Random;
 use crate::value::Value;
@@ -12,9 +13,6 @@ pub(super) const NAMES: [&str; 5] = ["random", "jittered", "hexagonal", "square"
 /// Most seeds of one plot.
 const MOST: f64 = 4e6;
 
-/// Draws for one seed in a region before the region is taken as too thin.
-const DRAWS: usize = 10_000;
-
 /// How seeds are laid.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
@@ -24,6 +22,7 @@ pub(super) struct Layout {
     jitter: Option<f64>,
     weights: Option<[f64; 2]>,
     radii: Vec<f64>,
+    areas: Option<[f64; 2]>,
     pub(super) relax: i64,
 }
 
@@ -42,6 +41,8 @@ pub(super) struct Seeds {
     pub(super) places: Vec<DVec2>,
     /// The squares of the circles' radii; empty if there are no circles.
     pub(super) weights: Vec<f64>,
+    /// What the areas of their cells are in the ratio of; empty if that is free.
+    pub(super) shares: Vec<f64>,
     /// How much wider and higher than asked for the lattice is.
     pub(super) stretch: DVec2,
 }
@@ -60,28 +61,47 @@ impl Layout {
             jitter: inputs.get("jitter").map(|_| inputs.number("jitter")),
             weights: inputs.get("weights").map(|_| inputs.pair("weights")),
             radii: radii(inputs, points.len())?,
+            areas: inputs.get("areas").map(|_| inputs.pair("areas")),
             relax: inputs.whole("relax"),
             points,
         };
-        match layout.weights {
-            Some([low, high]) if low > high => {
+        layout.checked(inputs)
+    }
+
+    /// The layout, unless ranges are none or inputs contradict each other.
+    fn checked(self, inputs: &Inputs<'_>) -> Result<Layout, Failure> {
+        for (name, range) in [("weights", self.weights), ("areas", self.areas)] {
+            if let Some([low, high]) = range.filter(|[low, high]| low > high) {
                 let message =
                     format!("expected a range from low to high, found from {low} to {high}");
-                Err(Failure::of_input("weights", message))
+                return Err(Failure::of_input(name, message));
             }
-            Some(_) if !layout.radii.is_empty() => {
-                let message = "`weights` and `radii` both say how heavy the seeds are";
-                Err(Failure::of_input("radii", message).with_hint("keep one of them"))
-            }
-            _ => Ok(layout),
         }
+        let stated = ["weights", "radii", "areas"];
+        let mut stated = stated.into_iter().filter(|name| inputs.get(name).is_some());
+        if let (Some(first), Some(second)) = (stated.next(), stated.next()) {
+            let message = format!("`{first}` and `{second}` both say how heavy the seeds are");
+            return Err(Failure::of_input(second, message).with_hint("keep one of them"));
+        }
+        if inputs.get("density").is_some() && self.name != "random" && self.relax == 0 {
+            let message =
+                "the density says where random seeds are, and where relaxation moves others";
+            return Err(Failure::of_input("density", message)
+                .with_hint("write `seeds: \"random\"`, or `relax` the seeds"));
+        }
+        Ok(self)
     }
 
     /// The seeds of a plot.
     ///
     /// # Errors
-    /// If there would be too many.
-    pub(super) fn seeds(&self, plot: &Plot, mut random: Random) -> Result<Seeds, Failure> {
+    /// If there would be too many, or the density is 0 everywhere.
+    pub(super) fn seeds(
+        &self,
+        plot: &Plot,
+        density: &Density<'_>,
+        mut random: Random,
+    ) -> Result<Seeds, Failure> {
         let area = plot.area();
         let side = match self.size {
             Size::Side(side) => side,
@@ -98,7 +118,7 @@ impl Layout {
             "given" => self.points.clone(),
             "random" => {
                 let count = (area / (side * side)).round().max(1.0) as usize;
-                anywhere(plot, count, &mut random)
+                density.seeds(plot, count, &mut random)?
             }
             name => {
                 let lattice = Lattice::new(plot, side, name == "hexagonal");
@@ -106,20 +126,22 @@ impl Layout {
                 lattice.places(self.jitter, name == "jittered", &mut random)
             }
         };
-        let weights = match self.weights {
-            Some(range) => {
-                let mut weight = |_| 0.5 * side * random.between(range);
-                places
-                    .iter()
-                    .map(&mut weight)
-                    .map(|radius| radius * radius)
-                    .collect()
-            }
-            None => self.radii.iter().map(|radius| radius * radius).collect(),
+        let mut drawn = |range: Option<[f64; 2]>| -> Vec<f64> {
+            let range = range.into_iter().cycle().take(places.len());
+            range.map(|range| random.between(range)).collect()
         };
+        let radii = drawn(self.weights);
+        let radii = radii.iter().map(|radius| 0.5 * side * radius);
         Ok(Seeds {
+            shares: drawn(self.areas),
+            weights: self
+                .radii
+                .iter()
+                .copied()
+                .chain(radii)
+                .map(|radius| radius * radius)
+                .collect(),
             places,
-            weights,
             stretch,
         })
     }
@@ -190,24 +212,6 @@ fn size(inputs: &Inputs<'_>, name: &str) -> Result<Size, Failure> {
         _ => Err(Failure::new("nothing says how large cells are")
             .with_hint("state a `cell_size` or a `count`")),
     }
-}
-
-/// So many seeds anywhere in a plot.
-fn anywhere(plot: &Plot, count: usize, random: &mut Random) -> Vec<DVec2> {
-    let [low, high] = plot.bounds();
-    let mut draw = || {
-        let share = DVec2::new(f64::from(random.share()), f64::from(random.share()));
-        low + share * (high - low)
-    };
-    if plot.is_rectangle() {
-        return (0..count).map(|_| draw()).collect();
-    }
-    let edges = plot.edges();
-    let mut inside = || {
-        let mut draws = (0..DRAWS).map(|_| draw());
-        draws.find(|at| edges.enclose(*at))
-    };
-    (0..count).map_while(|_| inside()).collect()
 }
 
 /// Rows of places over the rectangle around a plot.
