@@ -115,6 +115,11 @@ fn a_region_is_put_where_it_is_wanted() {
 fn files_that_are_no_areas_are_refused() {
     let message = |text: &str| read("file", text, vec![]).unwrap_err().message;
     assert!(message("{").starts_with("the file is no JSON"));
+    assert_eq!(message(" "), "the file is empty");
+    assert_eq!(
+        message("<svg xmlns='http://www.w3.org/2000/svg'><path d='L 3 4'/></svg>"),
+        "the file has no areas: the path in line 1 has a mistake in its data at character 1; it is drawn up to there"
+    );
     assert!(message("<svg").starts_with("the file is no SVG"));
     assert_eq!(message("<html/>"), "the file is no SVG: it is a `html`");
     assert_eq!(
@@ -242,6 +247,47 @@ fn shapes_of_svg_have_their_areas() {
             "<symbol id='s'><rect width='10' height='10'/></symbol><use href='#s'/>",
             25.0,
         ),
+        // What has no fill or is hidden is not there.
+        (
+            "<rect fill='none' stroke='red' width='400' height='200'/><rect width='10' height='10'/>",
+            25.0,
+        ),
+        (
+            "<g style='fill:none'><rect width='99' height='99'/><rect fill='#123' width='10' height='10'/></g>",
+            25.0,
+        ),
+        (
+            "<g visibility='hidden'><rect width='99' height='99'/><rect visibility='visible' width='10' height='10'/></g>",
+            25.0,
+        ),
+        (
+            "<circle r='-20'/><rect width='-9' height='9'/><rect width='10' height='10'/>",
+            25.0,
+        ),
+        // Percentages, of a circle that of the diagonal.
+        ("<rect width='25%' height='10%'/>", 500.0),
+        (
+            "<circle cx='50%' cy='50%' r='10%'/>",
+            pi * 0.01 * (400.0f64.powi(2) + 200.0f64.powi(2)) / 2.0 / 4.0,
+        ),
+        ("<rect width='2em' height='1ex'/>", 64.0),
+        // Drawings in drawings.
+        (
+            "<svg width='50' height='50' viewBox='0 0 10 10'><rect width='10' height='10'/></svg>",
+            625.0,
+        ),
+        (
+            "<svg width='80' height='50' viewBox='0 0 10 10' preserveAspectRatio='none'><rect width='10' height='10'/></svg>",
+            1000.0,
+        ),
+        (
+            "<svg width='80' height='50' viewBox='0 0 10 10' preserveAspectRatio='xMinYMax slice'><rect width='10' height='10'/></svg>",
+            1600.0,
+        ),
+        (
+            "<symbol id='s' viewBox='0 0 10 10'><rect width='100%' height='50%'/></symbol><use href='#s' width='50' height='50'/>",
+            312.5,
+        ),
     ];
     for (inside, expected) in cases {
         let found = area(&svg(inside, vec![]));
@@ -261,6 +307,66 @@ fn the_page_of_an_svg_stands_upright() {
     assert!((high - DVec2::new(30.0, 95.0)).length() < 1e-9, "{high}");
     let group = "<g id='a'><rect width='10' height='10'/></g><g id='b'><rect x='90' width='20' height='20'/></g>";
     assert!((area(&svg(group, vec![parts(&["b"])])) - 100.0).abs() < 1e-9);
+}
+
+#[test]
+fn viewports_align_what_is_drawn_in_them() {
+    let at = [("origin", Value::Choice("file"))];
+    let inside = "<rect width='10' height='10'/></svg>";
+    for (ratio, x) in [
+        ("xMinYMin", 0.0),
+        ("xMidYMid", 7.5),
+        ("xMaxYMax meet", 15.0),
+    ] {
+        let nested = format!(
+            "<svg x='20' width='80' height='50' viewBox='0 0 10 10' preserveAspectRatio='{ratio}'>{inside}"
+        );
+        let [low, high] = bounds(&svg(&nested, at.to_vec()));
+        assert!(
+            (low - DVec2::new(10.0 + x, 75.0)).length() < 1e-9,
+            "{ratio}: {low}"
+        );
+        assert!(
+            (high - low - DVec2::splat(25.0)).length() < 1e-9,
+            "{ratio}: {high}"
+        );
+    }
+}
+
+#[test]
+fn an_outline_without_a_fill_is_taken_by_its_name() {
+    let drawn =
+        "<rect id='frame' fill='none' width='40' height='20'/><rect width='10' height='10'/>";
+    assert!((area(&svg(drawn, vec![])) - 25.0).abs() < 1e-9);
+    assert!((area(&svg(drawn, vec![parts(&["frame"])])) - 200.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_is_not_understood_in_an_svg_is_said_once() {
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg"><style>rect { fill: none }</style>
+        <g clip-path="url(#c)"><rect transform="rotat(45)" width="9" height="9"/></g><rect transform="rotat(45)" width="9" height="3vw"/>
+        <rect fill="none" width="5" height="5"/><use href="#gone"/></svg>"##;
+    let nodes = r#""example": region_from_file(file: "a.svg")"#;
+    assert_eq!(
+        told(&[("a.svg", svg)], nodes).unwrap(),
+        [
+            "style sheets are not regarded; only attributes and `style` of elements are",
+            "a `clip-path` is not regarded; what it hides is taken too",
+            "the transform `rotat(45)` is not understood and left out",
+            "the length `height=\"3vw\"` is not understood and left out",
+            "the use in line 3 uses `#gone`, which is left out",
+            "1 shapes without a fill are left out; those that `parts` names are taken",
+        ]
+    );
+}
+
+#[test]
+fn areas_on_both_sides_of_the_antimeridian_are_side_by_side() {
+    let file = r#"{"type":"MultiPolygon","coordinates":[[[[179.99,0],[180,0],[180,0.01],[179.99,0.01],[179.99,0]]],
+        [[[-180,0],[-179.99,0],[-179.99,0.01],[-180,0.01],[-180,0]]]]}"#;
+    let [low, high] = bounds(&read("islands.geojson", file, vec![]).unwrap());
+    let size = high - low;
+    assert!((size.x / size.y - 2.0).abs() < 0.02, "{size}");
 }
 
 #[test]

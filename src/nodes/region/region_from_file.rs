@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// A part of the plane from a file.
 pub static KIND: Kind = Kind {
     name: "region_from_file",
-    version: 1,
+    version: 2,
     about: "A part of the plane from a GeoJSON file (longitude and latitude become mm) or from the filled shapes of an SVG \
             file.",
     source: "RFC 7946; SVG 2 (W3C 2018); transverse Mercator after Snyder 1987, eqs. (3-21), (8-9), (8-10)",
@@ -76,9 +76,10 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let Ok(text) = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)) else {
         return Err(refuse("the file is no text in UTF-8"));
     };
-    let mut drawn = match text.trim_start().starts_with('<') {
-        true => svg::read(text, &parts, inputs, build)?,
-        false => geojson::read(text, &parts, inputs)?,
+    let mut drawn = match text.trim_start().chars().next() {
+        None => return Err(refuse("the file is empty")),
+        Some('<') => svg::read(text, &parts, inputs, build)?,
+        Some(_) => geojson::read(text, &parts, inputs)?,
     };
     if drawn.is_empty() {
         let hint = "polygons of GeoJSON and filled shapes of SVG are read";

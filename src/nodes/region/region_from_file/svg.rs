@@ -1,12 +1,14 @@
 //! Filled shapes of an SVG file (2, W3C 2018).
 
 mod attributes;
+mod shape;
+mod viewport;
 
 use super::pen::Pen;
-use super::{Drawn, check_parts, path, refuse};
+use super::{Drawn, check_parts, refuse};
 use crate::geometry::polygon::{Lattice, rings_of};
 use crate::node::{Build, Failure, Inputs};
-use attributes::{number, page, property, transform};
+use attributes::{length, property, transform};
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -34,10 +36,39 @@ struct Waiting<'a> {
     node: Node<'a, 'a>,
     /// From its coordinates to mm on the page, upwards.
     place: DAffine2,
+    /// Width and height of what percentages are of.
+    view: DVec2,
+    /// The width and height that a `use` gives it.
+    used_size: [Option<f64>; 2],
     is_even_odd: bool,
+    is_filled: bool,
+    is_visible: bool,
     /// Whether it is in one of the parts that are asked for.
     is_wanted: bool,
     uses: usize,
+}
+
+/// What was not understood or left out, each once.
+#[derive(Debug, Default)]
+struct Complaints(Vec<String>);
+
+impl Complaints {
+    fn add(&mut self, complaint: String) {
+        if !self.0.contains(&complaint) {
+            self.0.push(complaint);
+        }
+    }
+}
+
+/// What is drawn so far.
+struct Drawing<'a> {
+    document: &'a Document<'a>,
+    tolerance: f64,
+    parts: &'a [String],
+    drawn: Vec<Drawn>,
+    complaints: Complaints,
+    /// Shapes that have no fill.
+    unfilled: usize,
 }
 
 /// The filled shapes of the elements that belong to `parts`, in mm on the page.
@@ -69,127 +100,77 @@ pub(super) fn read(
         |part| ids().any(|id| id == part),
         ids().map(str::to_owned).collect(),
     )?;
-    let mut waiting = vec![Waiting {
-        node: root,
-        place: page(&root),
-        is_even_odd: false,
-        is_wanted: parts.is_empty(),
-        uses: 0,
-    }];
-    let (mut drawn, mut count) = (vec![], 0);
-    while let Some(mut next) = waiting.pop() {
-        count += 1;
-        if count > MOST {
-            return Err(refuse(format!("the file draws more than {MOST} elements")));
-        }
-        build.go_on()?;
-        if !next.enter(parts) {
-            continue;
-        }
-        next.draw(&document, inputs, &mut drawn)?;
-        let follow = next.follow(&document);
-        waiting.extend(follow.into_iter().rev());
-    }
-    Ok(drawn)
+    let mut drawing = Drawing {
+        document: &document,
+        tolerance: inputs.number("tolerance"),
+        parts,
+        drawn: vec![],
+        complaints: Complaints::default(),
+        unfilled: 0,
+    };
+    drawing.draw(root, build)?;
+    drawing.finish(inputs)
 }
 
-impl<'a> Waiting<'a> {
-    /// Takes on what its attributes say; whether it is seen.
-    fn enter(&mut self, parts: &[String]) -> bool {
-        let node = self.node;
-        if !node.is_element()
-            || UNSEEN.contains(&node.tag_name().name())
-            || property(&node, "display") == Some("none")
-        {
-            return false;
+impl<'a> Drawing<'a> {
+    /// Draws all that is in an element.
+    fn draw(&mut self, root: Node<'a, 'a>, build: &Build<'_>) -> Result<(), Failure> {
+        let (place, view) = viewport::page(&root);
+        let mut waiting = vec![Waiting {
+            node: root,
+            place,
+            view,
+            used_size: [None; 2],
+            is_even_odd: false,
+            is_filled: true,
+            is_visible: true,
+            is_wanted: self.parts.is_empty(),
+            uses: 0,
+        }];
+        let mut count = 0;
+        while let Some(mut next) = waiting.pop() {
+            count += 1;
+            if count > MOST {
+                return Err(refuse(format!("the file draws more than {MOST} elements")));
+            }
+            build.go_on()?;
+            if next.enter(self) {
+                self.add(&next)?;
+                waiting.extend(next.follow(self).into_iter().rev());
+            }
         }
-        self.is_wanted |= node
-            .attribute("id")
-            .is_some_and(|id| parts.iter().any(|part| part == id));
-        self.is_even_odd = match property(&node, "fill-rule") {
-            Some("evenodd") => true,
-            Some("nonzero") => false,
-            _ => self.is_even_odd,
-        };
-        if let Some(text) = node.attribute("transform") {
-            self.place *= transform(text);
-        }
-        let is_moved = node.tag_name().name() == "use"
-            || node.tag_name().name() == "svg" && self.uses + node.ancestors().count() > 2;
-        if is_moved {
-            self.place *=
-                DAffine2::from_translation(DVec2::new(number(&node, "x"), number(&node, "y")));
-        }
-        true
+        Ok(())
     }
 
-    /// What is drawn behind it: what is in it, or what it uses.
-    fn follow(self, document: &'a Document<'a>) -> Vec<Waiting<'a>> {
-        let node = self.node;
-        if node.tag_name().name() != "use" {
-            return node
-                .children()
-                .map(|node| Waiting { node, ..self })
-                .collect();
-        }
-        let href = node
-            .attributes()
-            .find(|attribute| attribute.name() == "href");
-        let id = href.and_then(|href| href.value().strip_prefix('#'));
-        let used = id.and_then(|id| {
-            document
-                .descendants()
-                .find(|node| node.attribute("id") == Some(id))
-        });
-        let Some(used) = used.filter(|_| self.uses < DEEPEST) else {
-            return vec![];
-        };
-        let uses = self.uses + 1;
-        let of_symbol = used.children().map(|node| Waiting { node, uses, ..self });
-        match used.tag_name().name() {
-            "symbol" => of_symbol.collect(),
-            _ => vec![Waiting {
-                node: used,
-                uses,
-                ..self
-            }],
-        }
-    }
-
-    /// Adds the polygons of an element, if it is a shape.
-    fn draw(
-        &self,
-        document: &Document<'_>,
-        inputs: &Inputs<'_>,
-        drawn: &mut Vec<Drawn>,
-    ) -> Result<(), Failure> {
-        let node = &self.node;
-        let shape = node.tag_name().name();
-        let is_shape =
-            ["path", "polygon", "polyline", "rect", "circle", "ellipse"].contains(&shape);
-        if !is_shape || !self.is_wanted {
-            return Ok(());
-        }
-        let name = match node.attribute("id") {
-            Some(id) => format!("`{id}`"),
-            None => format!(
-                "the {shape} in line {}",
-                document.text_pos_at(node.range().start).row
-            ),
-        };
-        let scale = self
-            .place
-            .matrix2
-            .x_axis
-            .length()
-            .max(self.place.matrix2.y_axis.length());
-        let mut pen = Pen::new(inputs.number("tolerance") / scale.max(1e-12));
-        if let Err(at) = trace(node, &mut pen) {
-            inputs.warn(format!(
-                "{name} has a mistake in its data at character {at}; it is drawn up to there"
+    /// What was drawn, after warnings; of a file without areas the first complaint says why.
+    fn finish(self, inputs: &Inputs<'_>) -> Result<Vec<Drawn>, Failure> {
+        let mut complaints = self.complaints.0;
+        if self.unfilled > 0 {
+            complaints.push(format!(
+                "{} shapes without a fill are left out; those that `parts` names are taken",
+                self.unfilled
             ));
         }
-        let rings = pen.drawn(self.place);
+        if let (true, Some(first)) = (self.drawn.is_empty(), complaints.first()) {
+            return Err(refuse(format!("the file has no areas: {first}")));
+        }
+        complaints
+            .into_iter()
+            .for_each(|complaint| inputs.warn(complaint));
+        Ok(self.drawn)
+    }
+
+    /// Adds the polygons of an element, if it is a shape that is filled, or one that was asked for by its name.
+    fn add(&mut self, it: &Waiting<'_>) -> Result<(), Failure> {
+        if !shape::is_shape(&it.node) || !it.is_wanted || !it.is_visible {
+            return Ok(());
+        }
+        if !it.is_filled && !it.is_named(self.parts) {
+            self.unfilled += 1;
+            return Ok(());
+        }
+        let name = self.name(&it.node);
+        let rings = self.rings(it, &name);
         let corners = || rings.iter().flatten().copied();
         let is_finite =
             corners().all(|corner| corner.is_finite() && corner.abs().max_element() < 1e12);
@@ -203,50 +184,179 @@ impl<'a> Waiting<'a> {
             (low.min(at), high.max(at))
         });
         let rings: Vec<&[DVec2]> = rings.iter().map(|ring| &ring[..]).collect();
-        let filled = Lattice::around([low, high]).filled(&rings, self.is_even_odd);
+        let filled = Lattice::around([low, high]).filled(&rings, it.is_even_odd);
         if rings_of(&filled).is_empty() {
-            inputs.warn(format!("{name} encloses no area; it is left out"));
+            self.complaints
+                .add(format!("{name} encloses no area; it is left out"));
         }
-        drawn.extend(filled.into_iter().map(|polygon| Drawn {
+        self.drawn.extend(filled.into_iter().map(|polygon| Drawn {
             polygon,
             name: name.clone(),
         }));
         Ok(())
     }
-}
 
-/// Draws a shape.
-fn trace(node: &Node<'_, '_>, pen: &mut Pen) -> Result<(), usize> {
-    let of = |name: &str| number(node, name);
-    let pair = |x: &str, y: &str| DVec2::new(of(x), of(y));
-    match node.tag_name().name() {
-        "path" => path::draw(node.attribute("d").unwrap_or_default(), pen)?,
-        "rect" => {
-            let (low, size) = (pair("x", "y"), pair("width", "height").max(DVec2::ZERO));
-            // One radius stands for both.
-            let radius = |name: &str, other: &str| match node.attribute(name) {
-                Some(_) => of(name),
-                None => of(other),
-            };
-            pen.rectangle(
-                low,
-                low + size,
-                DVec2::new(radius("rx", "ry"), radius("ry", "rx")).max(DVec2::ZERO),
-            );
-        }
-        "circle" => pen.ellipse(pair("cx", "cy"), DVec2::splat(of("r"))),
-        "ellipse" => pen.ellipse(pair("cx", "cy"), pair("rx", "ry")),
-        _ => {
-            let numbers = path::numbers(node.attribute("points").unwrap_or_default());
-            let mut points = numbers
-                .chunks_exact(2)
-                .map(|pair| DVec2::new(pair[0], pair[1]));
-            points
-                .next()
-                .into_iter()
-                .for_each(|point| pen.move_to(point));
-            points.for_each(|point| pen.line_to(point));
+    /// What to call an element.
+    fn name(&self, node: &Node<'_, '_>) -> String {
+        match node.attribute("id") {
+            Some(id) => format!("`{id}`"),
+            None => format!(
+                "the {} in line {}",
+                node.tag_name().name(),
+                self.document.text_pos_at(node.range().start).row
+            ),
         }
     }
-    Ok(())
+
+    /// The rings of a shape in mm on the page.
+    fn rings(&mut self, it: &Waiting<'_>, name: &str) -> Vec<Vec<DVec2>> {
+        let axes = it.place.matrix2;
+        let scale = axes.x_axis.length().max(axes.y_axis.length());
+        let mut pen = Pen::new(self.tolerance / scale.max(1e-12));
+        let traced = shape::trace(&it.node, it.view, &mut pen, &mut self.complaints);
+        if let Err(at) = traced {
+            self.complaints.add(format!(
+                "{name} has a mistake in its data at character {at}; it is drawn up to there"
+            ));
+        }
+        pen.drawn(it.place)
+    }
+}
+
+impl<'a> Waiting<'a> {
+    /// Whether `parts` has its own name.
+    fn is_named(&self, parts: &[String]) -> bool {
+        let id = self.node.attribute("id");
+        id.is_some_and(|id| parts.iter().any(|part| part == id))
+    }
+
+    /// Takes on what its attributes say; whether what is in it may be drawn.
+    fn enter(&mut self, drawing: &mut Drawing<'_>) -> bool {
+        let node = self.node;
+        if !node.is_element()
+            || UNSEEN.contains(&node.tag_name().name())
+            || property(&node, "display") == Some("none")
+        {
+            return false;
+        }
+        if node.tag_name().name() == "style" {
+            let complaint =
+                "style sheets are not regarded; only attributes and `style` of elements are";
+            drawing.complaints.add(complaint.to_owned());
+            return false;
+        }
+        self.is_wanted |= self.is_named(drawing.parts);
+        self.inherit();
+        for name in ["clip-path", "mask"] {
+            if property(&node, name).is_some_and(|value| value != "none") {
+                drawing.complaints.add(format!(
+                    "a `{name}` is not regarded; what it hides is taken too"
+                ));
+            }
+        }
+        if let Some(text) = node.attribute("transform") {
+            self.place *= transform(text, &mut drawing.complaints);
+        }
+        match node.tag_name().name() {
+            "use" => {
+                let [x, y] = [("x", 0), ("y", 1)].map(|(name, axis)| {
+                    length(&node, name, self.view[axis], &mut drawing.complaints)
+                });
+                let at = DVec2::new(x.unwrap_or_default(), y.unwrap_or_default());
+                self.place *= DAffine2::from_translation(at);
+            }
+            "svg" if node.parent_element().is_some() => self.enter_viewport(drawing),
+            _ => {}
+        }
+        true
+    }
+
+    /// Takes on properties that go on to what is within.
+    fn inherit(&mut self) {
+        let node = &self.node;
+        self.is_even_odd = match property(node, "fill-rule") {
+            Some("evenodd") => true,
+            Some("nonzero") => false,
+            _ => self.is_even_odd,
+        };
+        self.is_filled = match property(node, "fill") {
+            Some("none" | "transparent") => false,
+            None | Some("inherit") => self.is_filled,
+            Some(_) => true,
+        };
+        self.is_visible = match property(node, "visibility") {
+            Some("hidden" | "collapse") => false,
+            Some("visible") => true,
+            _ => self.is_visible,
+        };
+    }
+
+    /// Goes into the coordinates of a `symbol`, or of an `svg` in another.
+    fn enter_viewport(&mut self, drawing: &mut Drawing<'_>) {
+        let used = std::mem::take(&mut self.used_size);
+        let mut of = |name: &str, axis: usize| {
+            length(&self.node, name, self.view[axis], &mut drawing.complaints)
+        };
+        let at = DVec2::new(
+            of("x", 0).unwrap_or_default(),
+            of("y", 1).unwrap_or_default(),
+        );
+        let [width, height] = [("width", 0), ("height", 1)].map(|(name, axis)| {
+            used[axis]
+                .or_else(|| of(name, axis))
+                .unwrap_or(self.view[axis])
+        });
+        let (place, view) = viewport::within(&self.node, at, DVec2::new(width, height));
+        (self.place, self.view) = (self.place * place, view);
+    }
+
+    /// What is drawn behind it: what is in it, or what it uses.
+    fn follow(self, drawing: &mut Drawing<'a>) -> Vec<Waiting<'a>> {
+        let node = self.node;
+        if node.tag_name().name() != "use" {
+            return self.children();
+        }
+        let href = node
+            .attributes()
+            .find(|attribute| attribute.name() == "href");
+        let id = href.and_then(|href| href.value().strip_prefix('#'));
+        let used = id.and_then(|id| {
+            drawing
+                .document
+                .descendants()
+                .find(|node| node.attribute("id") == Some(id))
+        });
+        let Some(used) = used.filter(|_| self.uses < DEEPEST) else {
+            let what = href.map_or("nothing".to_owned(), |href| format!("`{}`", href.value()));
+            drawing.complaints.add(format!(
+                "{} uses {what}, which is left out",
+                drawing.name(&node)
+            ));
+            return vec![];
+        };
+        let used_size = [("width", 0), ("height", 1)]
+            .map(|(name, axis)| length(&node, name, self.view[axis], &mut drawing.complaints));
+        let mut next = Waiting {
+            node: used,
+            uses: self.uses + 1,
+            used_size,
+            ..self
+        };
+        if used.tag_name().name() != "symbol" {
+            return vec![next];
+        }
+        next.inherit();
+        next.enter_viewport(drawing);
+        next.children()
+    }
+
+    fn children(self) -> Vec<Waiting<'a>> {
+        let used_size = [None; 2];
+        let child = |node| Waiting {
+            node,
+            used_size,
+            ..self
+        };
+        self.node.children().map(child).collect()
+    }
 }

@@ -1,74 +1,65 @@
 //! What the attributes of elements say: lengths, numbers, properties and transforms.
 
 use super::super::path;
+use super::Complaints;
 use glam::{DAffine2, DVec2};
 use roxmltree::Node;
 
-/// From the coordinates of the file to mm on its page, upwards.
-pub(super) fn page(root: &Node<'_, '_>) -> DAffine2 {
-    let lengths = ["width", "height"].map(|name| root.attribute(name).and_then(millimetres));
-    let view = path::numbers(root.attribute("viewBox").unwrap_or_default());
-    let unit = 25.4 / 96.0;
-    let (corner, view) = match view[..] {
-        [x, y, width, height] if width > 0.0 && height > 0.0 => {
-            (DVec2::new(x, y), Some([width, height]))
-        }
-        _ => (DVec2::ZERO, None),
-    };
-    let scales = [0, 1].map(|axis| Some(lengths[axis]? / view?[axis]));
-    // Both scales are the smaller one, as is usual: the drawing is in the middle of its page.
-    let scale = match scales {
-        [Some(x), Some(y)] => x.min(y),
-        [x, y] => x.or(y).unwrap_or(unit),
-    };
-    let size = |axis: usize| {
-        lengths[axis]
-            .or(view.map(|view| view[axis] * scale))
-            .unwrap_or_default()
-    };
-    let drawn = |axis: usize| view.map_or(size(axis), |view| view[axis] * scale);
-    let aside = |axis: usize| 0.5 * (size(axis) - drawn(axis));
-    let flip = DAffine2::from_cols_array(&[1.0, 0.0, 0.0, -1.0, aside(0), size(1) - aside(1)]);
-    flip * DAffine2::from_scale(DVec2::splat(scale)) * DAffine2::from_translation(-corner)
-}
-
-/// A length in mm.
-fn millimetres(text: &str) -> Option<f64> {
+/// A length in CSS pixels; percentages are of `whole`, if there is one, and letters are 16 pixels high.
+pub(super) fn pixels(text: &str, whole: Option<f64>) -> Option<f64> {
     let text = text.trim();
-    let end = text.find(|letter: char| {
-        letter.is_ascii_alphabetic() && !"eE".contains(letter) || letter == '%'
-    });
-    let (number, unit) = text.split_at(end.unwrap_or(text.len()));
+    let end = text
+        .char_indices()
+        .find(|(at, letter)| *letter == '%' || begins_unit(&text[*at..]))
+        .map_or(text.len(), |(at, _)| at);
+    let (number, unit) = text.split_at(end);
     let factor = match unit {
-        "" | "px" => 25.4 / 96.0,
-        "mm" => 1.0,
-        "cm" => 10.0,
-        "in" => 25.4,
-        "pt" => 25.4 / 72.0,
-        "pc" => 25.4 / 6.0,
-        "Q" => 0.25,
+        "" | "px" => 1.0,
+        "mm" => 96.0 / 25.4,
+        "cm" => 960.0 / 25.4,
+        "in" => 96.0,
+        "pt" => 96.0 / 72.0,
+        "pc" => 16.0,
+        "Q" => 24.0 / 25.4,
+        "em" | "rem" => 16.0,
+        "ex" | "ch" => 8.0,
+        "%" => whole? / 100.0,
         _ => return None,
     };
     number
         .trim()
         .parse()
         .ok()
-        .map(|number: f64| number * factor)
-        .filter(|number| *number > 0.0)
+        .filter(|number: &f64| number.is_finite())
+        .map(|number| number * factor)
 }
 
-/// A length of the drawing in its own units, 0 if it is not there.
-pub(super) fn number(node: &Node<'_, '_>, name: &str) -> f64 {
-    let text = node.attribute(name).unwrap_or_default();
-    let first = path::numbers(text).first().copied().unwrap_or_default();
-    let unit = text
-        .trim_start_matches(|letter: char| !letter.is_ascii_alphabetic() || "eE".contains(letter));
-    match unit {
-        "mm" | "cm" | "in" | "pt" | "pc" | "Q" => {
-            millimetres(text).unwrap_or_default() * 96.0 / 25.4
-        }
-        _ => first,
+/// Whether letters are a unit and not the exponent of a number.
+fn begins_unit(text: &str) -> bool {
+    let mut letters = text.chars();
+    let first = letters.next().unwrap_or(' ');
+    let is_exponent = "eE".contains(first)
+        && letters
+            .next()
+            .is_some_and(|next| next.is_ascii_digit() || "+-".contains(next));
+    first.is_ascii_alphabetic() && !is_exponent
+}
+
+/// A length of an element in units of its drawing, if it has it; percentages are of `whole`.
+pub(super) fn length(
+    node: &Node<'_, '_>,
+    name: &str,
+    whole: f64,
+    complaints: &mut Complaints,
+) -> Option<f64> {
+    let text = node.attribute(name)?;
+    let length = pixels(text, Some(whole));
+    if length.is_none() && text.trim() != "auto" {
+        complaints.add(format!(
+            "the length `{name}=\"{text}\"` is not understood and left out"
+        ));
     }
+    length
 }
 
 /// A property from an attribute, or from `style`, which comes first.
@@ -82,7 +73,7 @@ pub(super) fn property<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
 }
 
 /// A list of transforms; what is not understood changes nothing.
-pub(super) fn transform(text: &str) -> DAffine2 {
+pub(super) fn transform(text: &str, complaints: &mut Complaints) -> DAffine2 {
     let mut whole = DAffine2::IDENTITY;
     for part in text.split(')') {
         let Some((name, numbers)) = part.split_once('(') else {
@@ -114,7 +105,13 @@ pub(super) fn transform(text: &str) -> DAffine2 {
             ("skewY", [angle]) => {
                 DAffine2::from_cols_array(&[1.0, slant(*angle), 0.0, 1.0, 0.0, 0.0])
             }
-            _ => DAffine2::IDENTITY,
+            _ => {
+                complaints.add(format!(
+                    "the transform `{})` is not understood and left out",
+                    part.trim()
+                ));
+                DAffine2::IDENTITY
+            }
         };
     }
     whole
