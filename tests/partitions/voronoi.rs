@@ -259,6 +259,26 @@ fn cells_have_the_areas_that_are_stated() {
 }
 
 #[test]
+fn densities_and_areas_are_alike_at_any_thread_count() {
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(|| {
+            split(vec![
+                ("size", Value::Pair([400.0, 200.0])),
+                ("count", Value::Whole(150)),
+                ("relax", Value::Whole(2)),
+                ("areas", Value::Pair([0.5, 2.0])),
+                (
+                    "density",
+                    Value::Field(Field::position(Domain::Plane).part(0, 1)),
+                ),
+            ])
+        })
+    };
+    assert_eq!(with(1).unwrap(), with(3).unwrap());
+}
+
+#[test]
 fn borders_of_power_cells_have_equal_tangents() {
     let mut inputs = given(points(&[(20.0, 10.0), (60.0, 10.0)]), (100.0, 20.0));
     inputs.push((

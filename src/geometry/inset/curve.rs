@@ -168,7 +168,7 @@ mod tests {
 
     /// A quarter of the circle of radius 5 about (1, 2).
     fn quarter() -> Curve {
-        let bulge = (std::f64::consts::PI / 8.0).tan();
+        let bulge = libm::tan(std::f64::consts::PI / 8.0);
         Curve::of(DVec2::new(6.0, 2.0), DVec2::new(1.0, 7.0), bulge)
     }
 

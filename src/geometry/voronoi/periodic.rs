@@ -37,7 +37,7 @@ pub(super) fn cells<E>(
     let sites = first_period(seeds, scale, period);
     let around = Around::new(&sites, period);
     let mut reach = around.first_reach();
-    loop {
+    for round in 0.. {
         let copies = with_copies(&sites, period, reach);
         let dual = Dual::new(&copies, Some(period), go_on)?;
         let mut maker = Maker::new(&dual, scale);
@@ -53,8 +53,13 @@ pub(super) fn cells<E>(
                 partition,
             }));
         }
-        reach = reach.max(FARTHER * needed).min(period);
+        // What was not enough twice would grow again and again.
+        reach = match round {
+            0 => reach.max(FARTHER * needed).min(period),
+            _ => period,
+        };
     }
+    Ok(None)
 }
 
 /// All seeds, moved into the first period.

@@ -81,16 +81,16 @@ impl<'a> Density<'a> {
         }
         let asked = points.iter().map(|at| first_period(*at, cells.period));
         let found = self.build.sample(field, &asked.collect::<Vec<_>>())?;
-        let weight = |index: usize| {
-            let density = f64::from(found[0][index].max(0.0));
-            shares[index] * density * density
-        };
         let middle = |cell: usize| {
+            let of_cell = starts[cell]..starts[cell + 1];
+            let densities = &found[0][of_cell.clone()];
+            let shares = shares[of_cell.clone()].iter().zip(densities);
             let (mut sum, mut moment) = (0.0, DVec2::ZERO);
-            for index in starts[cell]..starts[cell + 1] {
-                let weight = weight(index);
+            for (point, (share, density)) in points[of_cell].iter().zip(shares) {
+                let density = f64::from(density.max(0.0));
+                let weight = share * density * density;
                 sum += weight;
-                moment += weight * (points[index] - cells.centres[cell]);
+                moment += weight * (*point - cells.centres[cell]);
             }
             let off = moment / sum;
             let is_some = sum > 0.0 && off.is_finite();
