@@ -317,6 +317,7 @@ impl Compiler {
         let needs_samples = match kernel.sampling() {
             Sampling::Filtered => false,
             Sampling::FilteredWhereEven { column, .. }
+            | Sampling::FilteredWhereNarrow { column, .. }
             | Sampling::FilteredWhereStraight { column, .. } => varies(&inputs[column]),
             Sampling::Supersampled => inputs.iter().any(varies),
         };

@@ -75,6 +75,7 @@ fn looks_around(step: &KernelStep, input: usize) -> bool {
         && match step.kernel.sampling() {
             Sampling::Filtered => false,
             Sampling::FilteredWhereEven { column, .. }
+            | Sampling::FilteredWhereNarrow { column, .. }
             | Sampling::FilteredWhereStraight { column, .. } => column == input,
             Sampling::Supersampled => true,
         }

@@ -1,10 +1,11 @@
 //! What a node's maths looks like to the engine: columns in, columns out.
 
-use super::Alternatives;
+use super::{Alternatives, Field};
 use crate::key::KeyHasher;
 use fearless_simd::Level;
 use std::fmt::Debug;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// How a kernel deals with what happens between two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +29,14 @@ pub enum Sampling {
         column: usize,
         /// Change from one sample to the next that is always allowed, in the column's unit.
         absolute: f32,
+    },
+    /// As `Filtered` where a position changes by no more than `widest` (in mm) within a sample; wider samples are
+    /// supersampled, the more finely the wider they are. For what has details of a size that is known.
+    FilteredWhereNarrow {
+        /// The input column with a part of the position.
+        column: usize,
+        /// Change from one sample to the next that is always allowed, in mm.
+        widest: f32,
     },
     /// Not linear (threshold, choice, min): the engine supersamples every sample that varies.
     Supersampled,
@@ -64,6 +73,13 @@ pub trait Kernel: Send + Sync + Debug {
 
     /// The inputs of which it reads one alternative in each sample, if it has such: the others need not be computed.
     fn alternatives(&self) -> Option<Alternatives> {
+        None
+    }
+
+    /// What the kernel of `node` averages away within pixels, or lets through of what was lost of its inputs, as
+    /// [`Field::lost`] of its columns.
+    fn lost(&self, node: &Arc<str>, inputs: &[Field]) -> Option<Field> {
+        let _ = (node, inputs);
         None
     }
 

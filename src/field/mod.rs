@@ -10,6 +10,7 @@ mod cost;
 mod given;
 mod guards;
 mod kernel;
+mod lost;
 mod places;
 mod points;
 mod run;
@@ -24,6 +25,7 @@ pub use compile::Program;
 pub(crate) use given::names_read;
 pub use guards::Alternatives;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};
+pub use lost::lost_of_sum;
 pub(crate) use points::at_points;
 pub use run::{ColumnCache, Columns, RunContext, Scratch, Work};
 pub(crate) use samples::remainder;
@@ -45,6 +47,8 @@ struct Expression {
     width: usize,
     domain: Domain,
     operation: Operation,
+    /// See [`Field::lost`].
+    lost: Option<Field>,
 }
 
 /// How an expression gets its columns.
@@ -135,17 +139,14 @@ impl Field {
             "the kernel of `{node}` reads fields of different domains"
         );
         let width = kernel.width();
+        let lost = kernel.lost(node, &inputs);
         let node = Arc::clone(node);
-        Field::new(
-            key.finish(),
-            width,
-            domain,
-            Operation::Kernel {
-                kernel,
-                inputs,
-                node,
-            },
-        )
+        let operation = Operation::Kernel {
+            kernel,
+            inputs,
+            node,
+        };
+        Field::new(key.finish(), width, domain, operation).having(lost)
     }
 
     /// Columns `first .. first + width` of this field.
@@ -158,15 +159,12 @@ impl Field {
             .whole(first as i64)
             .whole(width as i64)
             .finish();
-        Field::new(
-            key,
-            width,
-            self.domain(),
-            Operation::Part {
-                of: self.clone(),
-                first,
-            },
-        )
+        let lost = self.lost().map(|lost| lost.part(first, width));
+        let operation = Operation::Part {
+            of: self.clone(),
+            first,
+        };
+        Field::new(key, width, self.domain(), operation).having(lost)
     }
 
     /// This field where `position` points: the way from a plane into the solid it cuts.
@@ -210,7 +208,8 @@ impl Field {
             field: self.clone(),
             opening: Arc::clone(opening),
         };
-        Field::new(key, self.width(), opening.position.domain(), operation)
+        let lost = self.lost().map(|lost| lost.through(opening));
+        Field::new(key, self.width(), opening.position.domain(), operation).having(lost)
     }
 
     /// The hash that identifies the field's values.
@@ -242,7 +241,16 @@ impl Field {
             width,
             domain,
             operation,
+            lost: None,
         }))
+    }
+
+    /// This field, just made, of which so much is lost within pixels.
+    fn having(mut self, lost: Option<Field>) -> Field {
+        if let Some(expression) = Arc::get_mut(&mut self.0) {
+            expression.lost = lost;
+        }
+        self
     }
 }
 
@@ -290,9 +298,11 @@ impl Drop for Expression {
     fn drop(&mut self) {
         let mut pending = Vec::new();
         self.operation.release_into(&mut pending);
+        pending.extend(self.lost.take());
         while let Some(Field(shared)) = pending.pop() {
             if let Ok(mut expression) = Arc::try_unwrap(shared) {
                 expression.operation.release_into(&mut pending);
+                pending.extend(expression.lost.take());
             }
         }
     }

@@ -131,6 +131,13 @@ pub(super) fn list_uneven<S: Simd>(
     }
 }
 
+/// How much the values change from a sample of a grid to the next; the sample is not at the rim.
+pub(super) fn change(values: &[f32], width: usize, sample: usize) -> f32 {
+    let row = (values[sample + 1] - values[sample - 1]) * 0.5;
+    let column = (values[sample + width] - values[sample - width]) * 0.5;
+    (row * row + column * column).sqrt()
+}
+
 /// Lists the samples that differ from any of their neighbours in a row or column, in any of some columns.
 #[simd]
 pub(super) fn list_varying<S: Simd>(

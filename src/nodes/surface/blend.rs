@@ -16,7 +16,7 @@
 
 pub(super) mod channels;
 
-use super::mix::{Mix, Within};
+use super::mix::{Within, mixed};
 use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output, common_domain};
@@ -87,22 +87,14 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let pairs = channels::pairs(a, b, ["a", "b"], inputs)?;
     let blended = |(name, [a, b]): (String, [Field; 2])| {
         let is_direction = Material::is_direction(&name, &a);
-        let width = a.width();
         let within = match [&a, &b].iter().all(|field| field.as_constant().is_some()) {
             true => Within::Straight,
             false => Within::Even,
         };
-        let fields = vec![a, b, share.clone()];
+        let fields = [a, b, share.clone()];
         let field = match is_direction {
-            true => build.kernel(channels::Axes, fields),
-            false => build.kernel(
-                Mix {
-                    mode: "normal",
-                    width,
-                    within,
-                },
-                fields,
-            ),
+            true => build.kernel(channels::Axes, fields.into()),
+            false => mixed(build, "normal", within, fields),
         };
         (name, field)
     };

@@ -3,11 +3,13 @@
 //! A mode puts another colour in the place of `b`: the product of both, the lighter of both and so on.
 //!
 //! The inputs arrive averaged over the pixel, and what is mixed are the averages: exact where only the
-//! colours or only the amount change within a pixel. Amounts beyond 0 to 1 are clamped. Where the amount
-//! bends within a pixel, as at the rim of a knot, the mix is supersampled; so are all pixels that vary where the
-//! mode is not linear. With `pixels: means` no pixel is divided because of the amount.
+//! colours or only the amount change within a pixel. Amounts beyond 0 to 1 are clamped; where noise in the amount is
+//! finer than a pixel, it is the mean of clamped amounts that counts. Where the amount bends within a pixel, as at the
+//! rim of a knot, the mix is supersampled; so are all pixels that vary where the mode is not linear. With `pixels: means`
+//! no pixel is divided because of the amount, but those are in which the amount itself is, as in small pictures of stones:
+//! with the amount all that is mixed changes there.
 
-use crate::field::{Block, Kernel, Sampling};
+use crate::field::{Block, Field, InputColumn, Kernel, Sampling};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Type, Unit, Value};
@@ -15,7 +17,7 @@ use crate::value::{Type, Unit, Value};
 /// Mixes two colours.
 pub static KIND: Kind = Kind {
     name: "mix",
-    version: 1,
+    version: 2,
     about: "Mixes two colours in linear light: `a` where the amount is 0, `b` where it is 1. Amounts beyond \
             are clamped.",
     source: "own construction: linear interpolation",
@@ -34,8 +36,9 @@ pub static KIND: Kind = Kind {
         Input::new(
             "pixels",
             Type::Choice(&["divided", "means"]),
-            "divided: pixels in which the amount bends are looked at more closely; means: what is mixed are always means, \
-             which is quick, and right for masks that are filtered and for colours that do not follow the amount.",
+            "divided: pixels in which the amount bends are looked at more closely; means: what is mixed are means, \
+             which is quick, and right for masks that are filtered and for colours that do not follow the amount; only where \
+             stones are small in pixels these are looked at more closely.",
         )
         .default("divided"),
     ],
@@ -53,15 +56,30 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         "means" => Within::Means,
         _ => Within::Straight,
     };
-    let inputs = ["a", "b", "amount"].map(|name| inputs.field(name));
-    Ok(vec![Value::Field(build.kernel(
-        Mix {
-            mode,
-            width: 3,
-            within,
-        },
-        inputs.into(),
-    ))])
+    let fields = ["a", "b", "amount"].map(|name| inputs.field(name));
+    Ok(vec![Value::Field(mixed(build, mode, within, fields))])
+}
+
+/// The mix of two fields by an amount.
+pub(super) fn mixed(
+    build: &Build<'_>,
+    mode: &'static str,
+    within: Within,
+    [a, b, amount]: [Field; 3],
+) -> Field {
+    let (width, lost) = (a.width(), amount.lost().cloned());
+    let divided = amount.divided_where();
+    let divided = divided.filter(|_| within == Within::Means);
+    let (place, widest) = divided.map_or((None, None), |(of, by)| (Some(of), Some(by)));
+    let kernel = Mix {
+        mode,
+        width,
+        within,
+        is_lost: lost.is_some(),
+        widest,
+    };
+    let inputs = [a, b, amount].into_iter().chain(lost).chain(place);
+    build.kernel(kernel, inputs.collect())
 }
 
 /// What `b` can do; [`Mix::evaluate`] has the arithmetic of each.
@@ -79,15 +97,20 @@ const MODES: &[&str] = &[
     "lighten",
 ];
 
-/// Columns in: `width` of `a`, `width` of `b`, amount.
+/// Columns in: `width` of `a`, `width` of `b`, amount; if something is lost of the amount, its variance within pixels; if
+/// wide pixels of means are divided, a part of the position.
 #[derive(Debug)]
-pub(super) struct Mix {
+struct Mix {
     /// What `b` does to `a`.
-    pub(super) mode: &'static str,
+    mode: &'static str,
     /// Columns of the values that are mixed.
-    pub(super) width: usize,
+    width: usize,
     /// What is known of a pixel.
-    pub(super) within: Within,
+    within: Within,
+    /// Whether something is lost of the amount.
+    is_lost: bool,
+    /// How wide pixels of means may be in mm, if their width is limited.
+    widest: Option<f32>,
 }
 
 /// When the mean of a mix is taken for the mix of the means.
@@ -97,7 +120,7 @@ pub(super) enum Within {
     Straight,
     /// Where the amount is even: the values change where it does, as they do when materials are blended.
     Even,
-    /// Everywhere.
+    /// Everywhere but where pixels of the amount are divided.
     Means,
 }
 
@@ -106,7 +129,9 @@ impl Kernel for Mix {
         key.text("mix")
             .whole(i64::from(KIND.version))
             .text(self.mode)
-            .whole(self.within as i64);
+            .whole(self.within as i64)
+            .whole(i64::from(self.is_lost))
+            .number(self.widest.map_or(-1.0, f64::from));
     }
 
     fn width(&self) -> usize {
@@ -128,7 +153,13 @@ impl Kernel for Mix {
                 column,
                 absolute: 0.05,
             },
-            Within::Means => Sampling::Filtered,
+            Within::Means => match self.widest {
+                Some(widest) => Sampling::FilteredWhereNarrow {
+                    column: column + 1 + usize::from(self.is_lost),
+                    widest,
+                },
+                None => Sampling::Filtered,
+            },
         }
     }
 
@@ -160,17 +191,72 @@ impl Kernel for Mix {
 impl Mix {
     /// Mixes `a` with what the mode makes of one part of `a` and `b`; each mode has a loop of its own.
     fn mix(&self, block: &mut Block<'_>, blended: impl Fn(f32, f32) -> f32) {
-        let amounts = block.inputs[2 * self.width].values;
+        let amounts = self.amounts(block.inputs);
         for (part, output) in block.outputs.iter_mut().enumerate() {
             let colours = block.inputs[part]
                 .values
                 .iter()
                 .zip(block.inputs[self.width + part].values);
-            for ((output, (a, b)), amount) in output.iter_mut().zip(colours).zip(amounts) {
-                let amount = amount.clamp(0.0, 1.0);
+            for ((output, (a, b)), amount) in output.iter_mut().zip(colours).zip(&amounts) {
                 // Exact at both ends, which a + (b - a) * amount is not.
                 *output = a * (1.0 - amount) + blended(*a, *b) * amount;
             }
+        }
+    }
+
+    /// The amounts from 0 to 1.
+    fn amounts(&self, inputs: &[InputColumn<'_>]) -> Vec<f32> {
+        let amounts = inputs[2 * self.width].values;
+        match inputs.get(2 * self.width + 1) {
+            Some(lost) if self.is_lost => {
+                let pairs = amounts.iter().zip(lost.values);
+                pairs.map(|(mean, lost)| clamped(*mean, *lost)).collect()
+            }
+            _ => amounts.iter().map(|mean| mean.clamp(0.0, 1.0)).collect(),
+        }
+    }
+}
+
+/// Numbers that lie nearer to their mean are all taken for it.
+const NARROW: f32 = 1e-3;
+
+/// The mean of numbers of this mean and variance, evenly spread, each clamped to 0 to 1.
+#[inline]
+fn clamped(mean: f32, variance: f32) -> f32 {
+    let reach = (3.0 * variance).sqrt();
+    if reach < NARROW {
+        return mean.clamp(0.0, 1.0);
+    }
+    // The integral of the clamped number from 0 on.
+    let sum = |end: f32| {
+        let within = end.clamp(0.0, 1.0);
+        within * (end - 0.5 * within)
+    };
+    (sum(mean + reach) - sum(mean - reach)) * (0.5 / reach)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clamped_means_are_those_of_many() {
+        for (mean, variance) in [
+            (0.4, 0.01),
+            (-0.2, 0.1),
+            (0.9, 0.2),
+            (0.5, 4.0),
+            (1.2, 0.0),
+            (0.3, 0.0),
+        ] {
+            let reach = (3.0f32 * variance).sqrt();
+            let values = (0..1000).map(|i| mean + reach * ((i as f32 + 0.5) / 500.0 - 1.0));
+            let expected = values.map(|value| value.clamp(0.0, 1.0)).sum::<f32>() / 1000.0;
+            let found = clamped(mean, variance);
+            assert!(
+                (found - expected).abs() < 1e-3,
+                "{mean} {variance}: {found}, not {expected}"
+            );
         }
     }
 }

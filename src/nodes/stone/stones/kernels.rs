@@ -18,10 +18,7 @@ pub(super) struct Find {
 
 /// Pixels in which `x`, a column in, changes by more than `widest` mm hold more than this filters: the engine divides them.
 fn divided(x: usize, widest: f32) -> Sampling {
-    Sampling::FilteredWhereEven {
-        column: x,
-        absolute: widest,
-    }
+    Sampling::FilteredWhereNarrow { column: x, widest }
 }
 
 impl Kernel for Find {
