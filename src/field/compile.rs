@@ -30,6 +30,8 @@ pub struct Program {
     pub(super) outputs: Vec<Vec<usize>>,
     pub(super) margin: usize,
     pub(super) key: Key,
+    /// Whether its samples lie within a pixel.
+    pub(super) is_within: bool,
 }
 
 /// One operation of a program. Columns are slot numbers.
@@ -158,6 +160,7 @@ impl Compiler {
             outputs,
             margin,
             key: key.finish(),
+            is_within: !self.supersampling,
         };
         Some(super::slots::assign(program))
     }
@@ -317,7 +320,6 @@ impl Compiler {
         let needs_samples = match kernel.sampling() {
             Sampling::Filtered => false,
             Sampling::FilteredWhereEven { column, .. }
-            | Sampling::FilteredWhereNarrow { column, .. }
             | Sampling::FilteredWhereStraight { column, .. } => varies(&inputs[column]),
             Sampling::Supersampled => inputs.iter().any(varies),
         };

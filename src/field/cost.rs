@@ -71,12 +71,12 @@ pub(super) fn assign_margins(steps: &mut [Step], columns: usize) -> usize {
 
 /// Whether an input's neighbours are looked at to see where the step has to be supersampled.
 fn looks_around(step: &KernelStep, input: usize) -> bool {
-    step.within.is_some()
-        && match step.kernel.sampling() {
-            Sampling::Filtered => false,
-            Sampling::FilteredWhereEven { column, .. }
-            | Sampling::FilteredWhereNarrow { column, .. }
-            | Sampling::FilteredWhereStraight { column, .. } => column == input,
-            Sampling::Supersampled => true,
-        }
+    let is_deciding = match step.kernel.sampling() {
+        Sampling::Filtered => false,
+        Sampling::FilteredWhereEven { column, .. }
+        | Sampling::FilteredWhereStraight { column, .. } => column == input,
+        Sampling::Supersampled => true,
+    };
+    let is_width = |(column, _)| column == input;
+    step.within.is_some() && (is_deciding || step.kernel.widest().is_some_and(is_width))
 }

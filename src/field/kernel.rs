@@ -30,14 +30,6 @@ pub enum Sampling {
         /// Change from one sample to the next that is always allowed, in the column's unit.
         absolute: f32,
     },
-    /// As `Filtered` where a position changes by no more than `widest` (in mm) within a sample; wider samples are
-    /// supersampled, the more finely the wider they are. For what has details of a size that is known.
-    FilteredWhereNarrow {
-        /// The input column with a part of the position.
-        column: usize,
-        /// Change from one sample to the next that is always allowed, in mm.
-        widest: f32,
-    },
     /// Not linear (threshold, choice, min): the engine supersamples every sample that varies.
     Supersampled,
 }
@@ -63,6 +55,12 @@ pub trait Kernel: Send + Sync + Debug {
     /// How it deals with what happens between two samples.
     fn sampling(&self) -> Sampling {
         Sampling::Filtered
+    }
+
+    /// A column in with a part of the position, and a width in mm: where samples are supersampled and several times as wide,
+    /// they are looked at the more closely. For what has details of a size that is known.
+    fn widest(&self) -> Option<(usize, f32)> {
+        None
     }
 
     /// Whether the mean over a supersampled pixel takes in samples of other charts: so where a picture shows what lies

@@ -4,7 +4,7 @@
 //! not divide pixels, can do with the variance: see Heitz, Nowrouzezahrai, Poulin & Neyret 2013, who average colours over
 //! the values that noise has within a pixel.
 
-use super::{Block, Field, Kernel, Operation, Sampling};
+use super::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use std::sync::Arc;
 
@@ -15,22 +15,18 @@ impl Field {
         self.0.lost.as_ref()
     }
 
-    /// Where pixels of this field are divided because they are too wide: a part of the position and its change from one
-    /// sample to the next, in mm, that is still allowed.
-    pub fn divided_where(&self) -> Option<(Field, f32)> {
-        let mut field = self;
-        loop {
-            match &field.0.operation {
-                Operation::Part { of, .. } => field = of,
-                Operation::Kernel { kernel, inputs, .. } => {
-                    let Sampling::FilteredWhereNarrow { column, widest } = kernel.sampling() else {
-                        return None;
-                    };
-                    return column_of(inputs, column).map(|column| (column, widest));
-                }
-                _ => return None,
-            }
-        }
+    /// A part of the position, and a width in mm: pixels that are wider hold details of this field that are not filtered,
+    /// and are divided. That of the first kernel on the way to it which says so by [`Kernel::widest`].
+    pub fn widest(&self) -> Option<&(Field, f32)> {
+        self.0.widest.as_ref()
+    }
+}
+
+/// What [`Field::widest`] is of a kernel's columns.
+pub(super) fn widest_of(kernel: &dyn Kernel, inputs: &[Field]) -> Option<(Field, f32)> {
+    match kernel.widest() {
+        Some((column, widest)) => Some((column_of(inputs, column)?, widest)),
+        None => inputs.iter().find_map(|input| input.widest().cloned()),
     }
 }
 
@@ -75,5 +71,81 @@ impl Kernel for SumOfVariances {
                 *output += factor * factor * variance;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::{Program, RunContext, Samples, Scratch};
+    use crate::value::Domain;
+
+    /// Gives its input, of which 0.25 is lost, and pixels wider than 3 mm are divided.
+    #[derive(Debug)]
+    struct Rough;
+
+    impl Kernel for Rough {
+        fn add_to_key(&self, key: &mut KeyHasher) {
+            key.text("rough of a test");
+        }
+
+        fn width(&self) -> usize {
+            1
+        }
+
+        fn widest(&self) -> Option<(usize, f32)> {
+            Some((1, 3.0))
+        }
+
+        fn lost(&self, _: &Arc<str>, _: &[Field]) -> Option<Field> {
+            Some(Field::constant(0.25))
+        }
+
+        fn evaluate(&self, block: &mut Block<'_>) {
+            block.outputs[0].copy_from_slice(block.inputs[0].values);
+        }
+    }
+
+    fn value(field: &Field) -> f32 {
+        let program = Program::compile(std::slice::from_ref(field));
+        let context = RunContext {
+            level: fearless_simd::Level::baseline(),
+            cache: None,
+            filtering: true,
+            cancel: None,
+        };
+        let mut scratch = Scratch::default();
+        program.run(&Samples::Points(&[[5.0, 7.0, 0.0]]), &mut scratch, &context);
+        program.output(&scratch, 0, 0)[0]
+    }
+
+    #[test]
+    fn variances_add_up_by_squares_of_factors() {
+        let node: Arc<str> = "test".into();
+        let place = Field::position(Domain::Plane);
+        let rough = Field::kernel(&node, Arc::new(Rough), vec![place.clone()]);
+        let factor = |number| Field::constant(number);
+        let terms = [
+            (factor(3.0), &rough),
+            (factor(-2.0), &rough),
+            (factor(9.0), &place),
+        ];
+        let lost = lost_of_sum(&node, &terms).unwrap();
+        assert_eq!(value(&lost), 0.25 * (9.0 + 4.0));
+        assert!(lost_of_sum(&node, &[(factor(1.0), &place)]).is_none());
+    }
+
+    #[test]
+    fn what_is_known_of_pixels_goes_through_openings() {
+        let node: Arc<str> = "test".into();
+        let place = Field::position(Domain::Plane);
+        let rough = Field::kernel(&node, Arc::new(Rough), vec![place.clone()]);
+        let (y, widest) = rough.widest().unwrap();
+        assert_eq!((value(y), *widest), (7.0, 3.0));
+        let elsewhere = Field::constants(&[1.0, 2.0, 0.0]);
+        let moved = rough.at(&elsewhere);
+        assert_eq!(value(&moved.widest().unwrap().0), 2.0);
+        assert_eq!(value(moved.lost().unwrap()), 0.25);
+        assert!(place.lost().is_none() && place.widest().is_none());
     }
 }

@@ -49,6 +49,8 @@ struct Expression {
     operation: Operation,
     /// See [`Field::lost`].
     lost: Option<Field>,
+    /// See [`Field::widest`].
+    widest: Option<(Field, f32)>,
 }
 
 /// How an expression gets its columns.
@@ -139,14 +141,17 @@ impl Field {
             "the kernel of `{node}` reads fields of different domains"
         );
         let width = kernel.width();
-        let lost = kernel.lost(node, &inputs);
+        let (lost, widest) = (
+            kernel.lost(node, &inputs),
+            lost::widest_of(&*kernel, &inputs),
+        );
         let node = Arc::clone(node);
         let operation = Operation::Kernel {
             kernel,
             inputs,
             node,
         };
-        Field::new(key.finish(), width, domain, operation).having(lost)
+        Field::new(key.finish(), width, domain, operation).having(lost, widest)
     }
 
     /// Columns `first .. first + width` of this field.
@@ -160,11 +165,12 @@ impl Field {
             .whole(width as i64)
             .finish();
         let lost = self.lost().map(|lost| lost.part(first, width));
+        let widest = self.widest().cloned();
         let operation = Operation::Part {
             of: self.clone(),
             first,
         };
-        Field::new(key, width, self.domain(), operation).having(lost)
+        Field::new(key, width, self.domain(), operation).having(lost, widest)
     }
 
     /// This field where `position` points: the way from a plane into the solid it cuts.
@@ -209,7 +215,8 @@ impl Field {
             opening: Arc::clone(opening),
         };
         let lost = self.lost().map(|lost| lost.through(opening));
-        Field::new(key, self.width(), opening.position.domain(), operation).having(lost)
+        let widest = self.widest().map(|(of, by)| (of.through(opening), *by));
+        Field::new(key, self.width(), opening.position.domain(), operation).having(lost, widest)
     }
 
     /// The hash that identifies the field's values.
@@ -242,13 +249,14 @@ impl Field {
             domain,
             operation,
             lost: None,
+            widest: None,
         }))
     }
 
-    /// This field, just made, of which so much is lost within pixels.
-    fn having(mut self, lost: Option<Field>) -> Field {
+    /// This field, just made, with what is known of its pixels.
+    fn having(mut self, lost: Option<Field>, widest: Option<(Field, f32)>) -> Field {
         if let Some(expression) = Arc::get_mut(&mut self.0) {
-            expression.lost = lost;
+            (expression.lost, expression.widest) = (lost, widest);
         }
         self
     }
@@ -293,16 +301,23 @@ impl Operation {
     }
 }
 
+impl Expression {
+    /// Moves all fields this one depends on into `fields`.
+    fn release_into(&mut self, fields: &mut Vec<Field>) {
+        self.operation.release_into(fields);
+        fields.extend(self.lost.take());
+        fields.extend(self.widest.take().map(|(field, _)| field));
+    }
+}
+
 impl Drop for Expression {
     /// Releases long chains in a loop: the default would recurse once for every link.
     fn drop(&mut self) {
         let mut pending = Vec::new();
-        self.operation.release_into(&mut pending);
-        pending.extend(self.lost.take());
+        self.release_into(&mut pending);
         while let Some(Field(shared)) = pending.pop() {
             if let Ok(mut expression) = Arc::try_unwrap(shared) {
-                expression.operation.release_into(&mut pending);
-                pending.extend(expression.lost.take());
+                expression.release_into(&mut pending);
             }
         }
     }

@@ -12,8 +12,7 @@ use std::collections::BTreeMap;
 /// Samples along each side of a supersampled pixel.
 const SIDE: usize = 4;
 
-/// Samples along each side of pixels that are more than so many times as wide as a kernel allows
-/// ([`Sampling::FilteredWhereNarrow`]).
+/// Samples along each side of pixels that are more than so many times as wide as a kernel says.
 const FINER: [(f32, usize); 2] = [(14.0, 16), (8.0, 8)];
 
 /// Samples that are computed in one go, without margins.
@@ -206,11 +205,7 @@ fn pixels_to_supersample(
                 .collect();
             dispatch!(level, simd => spread::list_varying(simd, &columns, inside, list));
         }
-        Sampling::FilteredWhereEven { column, absolute }
-        | Sampling::FilteredWhereNarrow {
-            column,
-            widest: absolute,
-        } => {
+        Sampling::FilteredWhereEven { column, absolute } => {
             let values = scratch.column(step.inputs[column]);
             dispatch!(level, simd => spread::list_uneven(simd, values, inside, absolute, list));
         }
@@ -233,7 +228,7 @@ fn by_side(
     width: usize,
     pixels: &[u32],
 ) -> BTreeMap<usize, Vec<u32>> {
-    let Sampling::FilteredWhereNarrow { column, widest } = step.kernel.sampling() else {
+    let Some((column, widest)) = step.kernel.widest() else {
         return BTreeMap::from([(SIDE, pixels.to_vec())]);
     };
     let values = scratch.column(step.inputs[column]);

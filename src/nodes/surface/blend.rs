@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// Blends two materials.
 pub static KIND: Kind = Kind {
     name: "blend",
-    version: 1,
+    version: 2,
     about: "Blends two whole materials by a mask, or by which of them is higher. Extras that one of them lacks are 0 \
             or black there.",
     source: "own construction; by height after Mishkinis 2013 (terrain texture splatting), with the S of Perlin 1985",

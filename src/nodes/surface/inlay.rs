@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// Lets a material into another.
 pub static KIND: Kind = Kind {
     name: "inlay",
-    version: 1,
+    version: 2,
     about: "Lets one flat material into another, inside a region or the cells of a partition: with a gap, a glue line, a \
             step in height and chamfered edges, in all channels alike.",
     source: "own construction: a profile of the distance to the outline; shade of a groove after Lambert's cosine law",
@@ -133,9 +133,9 @@ pub static KIND: Kind = Kind {
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let (ground, of) = (inputs.material("ground"), inputs.material("of"));
-    let [border, cell] = outline(inputs, build)?;
+    let outline = outline(inputs, build)?;
     let cut = Cut::read(inputs);
-    let zones = build.kernel(Zones::new(&cut), vec![border, cell]);
+    let zones = build.kernel(Zones::new(&cut), outline.into());
     let shares = zones.part(0, 2);
     let seen = build.kernel(Seen, vec![shares.clone()]);
     let channels = pairs(ground, of, ["ground", "of"], inputs)?;
@@ -185,17 +185,22 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     ])
 }
 
-/// The distance to the outline, above 0 inside, and which cell is at a point.
+/// The distance to the outline, above 0 inside, and the id of the cell that touches it there, -1 for none.
 fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure> {
     let stated = ["region", "cells"].map(|name| inputs.get(name).is_some());
     match stated {
         [true, false] => {
             let found = Found::new(build, &Arc::new(cells(inputs.region("region"))));
-            Ok([found.border(), found.index()])
+            Ok([found.border(), Field::constant(-1.0)])
         }
         [false, true] => {
-            let found = Found::new(build, inputs.partition("cells"));
-            Ok([found.border(), found.index()])
+            let partition = inputs.partition("cells");
+            let found = Found::new(build, partition);
+            let beyond = match partition.touches() {
+                true => found.beyond(),
+                false => Field::constant(-1.0),
+            };
+            Ok([found.border(), beyond])
         }
         [true, true] => {
             let message = "both a `region` and `cells` are stated";

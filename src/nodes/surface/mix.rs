@@ -68,9 +68,11 @@ pub(super) fn mixed(
     [a, b, amount]: [Field; 3],
 ) -> Field {
     let (width, lost) = (a.width(), amount.lost().cloned());
-    let divided = amount.divided_where();
-    let divided = divided.filter(|_| within == Within::Means);
-    let (place, widest) = divided.map_or((None, None), |(of, by)| (Some(of), Some(by)));
+    let widest = match within {
+        Within::Means => amount.widest(),
+        _ => [&amount, &a, &b].into_iter().find_map(Field::widest),
+    };
+    let (place, widest) = widest.cloned().unzip();
     let kernel = Mix {
         mode,
         width,
@@ -98,7 +100,7 @@ const MODES: &[&str] = &[
 ];
 
 /// Columns in: `width` of `a`, `width` of `b`, amount; if something is lost of the amount, its variance within pixels; if
-/// wide pixels of means are divided, a part of the position.
+/// wide pixels hold more than is filtered, a part of the position.
 #[derive(Debug)]
 struct Mix {
     /// What `b` does to `a`.
@@ -109,7 +111,7 @@ struct Mix {
     within: Within,
     /// Whether something is lost of the amount.
     is_lost: bool,
-    /// How wide pixels of means may be in mm, if their width is limited.
+    /// How wide pixels may be in mm before they hold more than is filtered, if that is known.
     widest: Option<f32>,
 }
 
@@ -154,13 +156,17 @@ impl Kernel for Mix {
                 absolute: 0.05,
             },
             Within::Means => match self.widest {
-                Some(widest) => Sampling::FilteredWhereNarrow {
-                    column: column + 1 + usize::from(self.is_lost),
-                    widest,
+                Some(absolute) => Sampling::FilteredWhereEven {
+                    column: self.place(),
+                    absolute,
                 },
                 None => Sampling::Filtered,
             },
         }
+    }
+
+    fn widest(&self) -> Option<(usize, f32)> {
+        self.widest.map(|widest| (self.place(), widest))
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
@@ -202,6 +208,11 @@ impl Mix {
                 *output = a * (1.0 - amount) + blended(*a, *b) * amount;
             }
         }
+    }
+
+    /// The column with a part of the position, if pixels must not be wide.
+    fn place(&self) -> usize {
+        2 * self.width + 1 + usize::from(self.is_lost)
     }
 
     /// The amounts from 0 to 1.

@@ -18,7 +18,10 @@ pub(super) struct Find {
 
 /// Pixels in which `x`, a column in, changes by more than `widest` mm hold more than this filters: the engine divides them.
 fn divided(x: usize, widest: f32) -> Sampling {
-    Sampling::FilteredWhereNarrow { column: x, widest }
+    Sampling::FilteredWhereEven {
+        column: x,
+        absolute: widest,
+    }
 }
 
 impl Kernel for Find {
@@ -94,6 +97,10 @@ impl Kernel for Relief {
 
     fn sampling(&self) -> Sampling {
         divided(7, self.widest)
+    }
+
+    fn widest(&self) -> Option<(usize, f32)> {
+        Some((7, self.widest))
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
@@ -174,6 +181,10 @@ impl Kernel for OfStone {
     fn sampling(&self) -> Sampling {
         self.widest
             .map_or(Sampling::Filtered, |widest| divided(3, widest))
+    }
+
+    fn widest(&self) -> Option<(usize, f32)> {
+        self.widest.map(|widest| (3, widest))
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
