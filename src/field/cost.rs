@@ -41,7 +41,9 @@ pub(super) fn assign_margins(steps: &mut [Step], columns: usize) -> usize {
     let mut margins = vec![0; columns];
     for step in steps.iter_mut().rev() {
         match step {
-            Step::Spread { of, along, joins } => {
+            Step::Spread {
+                of, along, joins, ..
+            } => {
                 let distance = margins[along[0]].max(margins[along[1]]) + 1;
                 for read in joins.iter().flatten().chain([&*of]) {
                     margins[*read] = margins[*read].max(distance);

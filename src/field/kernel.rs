@@ -52,6 +52,13 @@ pub trait Kernel: Send + Sync + Debug {
         false
     }
 
+    /// Whether input column `column`, whose spread it reads, has kinks, as a distance has in the middle between two edges:
+    /// within pixels the spread is there the larger of the changes to both sides, and not their mean, which may be 0.
+    fn has_kinks(&self, column: usize) -> bool {
+        let _ = column;
+        false
+    }
+
     /// How it deals with what happens between two samples.
     fn sampling(&self) -> Sampling {
         Sampling::Filtered

@@ -141,19 +141,27 @@ impl Program {
             let is_wanted = |guard: &Guard| guard.is_wanted(scratch.column(guard.column));
             match (step, stored) {
                 _ if !needed || !guard.as_ref().is_none_or(is_wanted) => {}
-                (Step::Spread { of, along, joins }, _) => {
+                (
+                    Step::Spread {
+                        of,
+                        along,
+                        joins,
+                        has_kinks,
+                    },
+                    _,
+                ) => {
                     let shape = shape(samples, context);
                     write_columns(scratch, *along, |scratch, columns| {
                         let values = scratch.column(*of);
                         let joins = joins.map(|joins| joins.map(|slot| scratch.column(slot)));
-                        match self.is_within {
+                        match *has_kinks {
                             true => {
                                 let change = spread::change_at_kinks;
-                                write_spread(values, joins, shape, columns, change);
+                                charts::write_spread_between(values, joins, shape, columns, change);
                             }
                             false => {
                                 let change = spread::mean_change;
-                                write_spread(values, joins, shape, columns, change);
+                                charts::write_spread_between(values, joins, shape, columns, change);
                             }
                         }
                     });
@@ -243,20 +251,6 @@ enum Stored {
     /// Nothing yet; this is the key to store it under.
     Under(Key),
     Columns(Columns),
-}
-
-/// Writes the spread of a column, in its charts if there are any.
-fn write_spread(
-    values: &[f32],
-    joins: Option<[&[f32]; 2]>,
-    shape: [usize; 2],
-    along: &mut [Vec<f32>; 2],
-    change: impl Fn([f32; 3]) -> f32,
-) {
-    match joins {
-        None => spread::write_spread(values, shape, along, change),
-        Some(joins) => charts::write_spread(values, joins, shape, along, change),
-    }
 }
 
 /// Width and height of the grids in which samples have neighbours.

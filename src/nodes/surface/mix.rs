@@ -13,6 +13,9 @@ use crate::field::{Block, Field, InputColumn, Kernel, Sampling};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Type, Unit, Value};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch};
+use fearless_simd_macros::simd;
 
 /// Mixes two colours.
 pub static KIND: Kind = Kind {
@@ -197,7 +200,7 @@ impl Kernel for Mix {
 impl Mix {
     /// Mixes `a` with what the mode makes of one part of `a` and `b`; each mode has a loop of its own.
     fn mix(&self, block: &mut Block<'_>, blended: impl Fn(f32, f32) -> f32) {
-        let amounts = self.amounts(block.inputs);
+        let amounts = self.amounts(block.inputs, block.level);
         for (part, output) in block.outputs.iter_mut().enumerate() {
             let colours = block.inputs[part]
                 .values
@@ -216,12 +219,13 @@ impl Mix {
     }
 
     /// The amounts from 0 to 1.
-    fn amounts(&self, inputs: &[InputColumn<'_>]) -> Vec<f32> {
+    fn amounts(&self, inputs: &[InputColumn<'_>], level: Level) -> Vec<f32> {
         let amounts = inputs[2 * self.width].values;
         match inputs.get(2 * self.width + 1) {
             Some(lost) if self.is_lost => {
-                let pairs = amounts.iter().zip(lost.values);
-                pairs.map(|(mean, lost)| clamped(*mean, *lost)).collect()
+                let mut means = vec![0.0; amounts.len()];
+                dispatch!(level, simd => write_clamped(simd, amounts, lost.values, &mut means));
+                means
             }
             _ => amounts.iter().map(|mean| mean.clamp(0.0, 1.0)).collect(),
         }
@@ -231,19 +235,26 @@ impl Mix {
 /// Numbers that lie nearer to their mean are all taken for it.
 const NARROW: f32 = 1e-3;
 
-/// The mean of numbers of this mean and variance, evenly spread, each clamped to 0 to 1.
-#[inline]
-fn clamped(mean: f32, variance: f32) -> f32 {
-    let reach = (3.0 * variance).sqrt();
-    if reach < NARROW {
-        return mean.clamp(0.0, 1.0);
+/// Writes means of numbers that are evenly spread, each clamped to 0 to 1, given means and variances without the clamp.
+#[simd]
+fn write_clamped<S: Simd>(simd: S, means: &[f32], variances: &[f32], out: &mut [f32]) {
+    for start in (0..means.len()).step_by(S::f32s::LEN) {
+        let range = start..start + S::f32s::LEN;
+        let mean = S::f32s::from_slice(simd, &means[range.clone()]);
+        let reach = (S::f32s::from_slice(simd, &variances[range.clone()]) * 3.0).sqrt();
+        let sum = integral::<S>(mean + reach) - integral::<S>(mean - reach);
+        let spread = sum * 0.5 / reach.max_precise(NARROW);
+        let held = mean.max_precise(0.0).min_precise(1.0);
+        let is_narrow = reach.simd_lt(NARROW);
+        is_narrow.select(held, spread).store_slice(&mut out[range]);
     }
-    // The integral of the clamped number from 0 on.
-    let sum = |end: f32| {
-        let within = end.clamp(0.0, 1.0);
-        within * (end - 0.5 * within)
-    };
-    (sum(mean + reach) - sum(mean - reach)) * (0.5 / reach)
+}
+
+/// The integral from 0 to `end` of a number that is clamped to 0 to 1.
+#[inline(always)]
+fn integral<S: Simd>(end: S::f32s) -> S::f32s {
+    let within = end.max_precise(0.0).min_precise(1.0);
+    within * (end - within * 0.5)
 }
 
 #[cfg(test)]
@@ -252,21 +263,24 @@ mod tests {
 
     #[test]
     fn clamped_means_are_those_of_many() {
-        for (mean, variance) in [
+        let cases = [
             (0.4, 0.01),
             (-0.2, 0.1),
             (0.9, 0.2),
             (0.5, 4.0),
             (1.2, 0.0),
             (0.3, 0.0),
-        ] {
+        ];
+        for (mean, variance) in cases {
             let reach = (3.0f32 * variance).sqrt();
             let values = (0..1000).map(|i| mean + reach * ((i as f32 + 0.5) / 500.0 - 1.0));
             let expected = values.map(|value| value.clamp(0.0, 1.0)).sum::<f32>() / 1000.0;
-            let found = clamped(mean, variance);
+            let (means, variances, mut found) = ([mean; 16], [variance; 16], [0.0; 16]);
+            dispatch!(Level::new(), simd => write_clamped(simd, &means, &variances, &mut found));
+            let is_near = |found: &f32| (found - expected).abs() < 1e-3;
             assert!(
-                (found - expected).abs() < 1e-3,
-                "{mean} {variance}: {found}, not {expected}"
+                found.iter().all(is_near),
+                "{mean} {variance}: {found:?}, not {expected}"
             );
         }
     }

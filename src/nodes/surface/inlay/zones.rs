@@ -127,6 +127,10 @@ impl Kernel for Zones {
         column == 0
     }
 
+    fn has_kinks(&self, column: usize) -> bool {
+        column == 0
+    }
+
     fn sampling(&self) -> Sampling {
         // Where another cell or another edge is nearer, the distance has a kink.
         self.profile.sampling()
