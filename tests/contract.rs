@@ -295,32 +295,42 @@ fn figures_of_virtual_energy_keep_the_contract() {
 }
 
 #[test]
-#[ignore = "not kept yet: means are mixed, and dirt follows the rims"]
 fn pavements_keep_the_contract() {
     keeps_it_from_1024("rubble", "rubble", [1600.0, 1600.0], 10.0);
-    keeps_it_from_1024("running_bond", "bond", [1600.0, 1600.0], 10.0);
+    keeps_it_from_1024("running_bond", "bond", [1600.0, 1600.0], 4.0);
     keeps_it_from_1024("fan_paving", "fan", [2000.0, 2000.0], 10.0);
-    keeps_it_from_1024("sett_tile", "tile", [2000.0, 2000.0], 10.0);
+    keeps_it_from_1024("sett_tile", "tile", [2000.0, 2000.0], 8.0);
+    keeps_it_from_1024("miyata_10", "base", [2000.0, 2000.0], 8.0);
+    keeps_it_from_1024("miyata_11", "c_corner", [1600.0, 1600.0], 8.0);
+    keeps_it_from_1024("miyata_12", "a_base", [1600.0, 1600.0], 8.0);
 }
 
 #[test]
 #[ignore = "takes minutes: each pixel of fibres is many samples"]
-fn hybrids_keep_the_contract() {
+fn parquet_keeps_the_contract() {
     keeps_it_from_1024("parquet", "floor", [1600.0, 1200.0], 4.0);
+}
+
+#[test]
+#[ignore = "not kept yet: gaps of a twentieth of a pixel between pieces as small as two pixels"]
+fn small_inlays_keep_the_contract() {
     keeps_it_from_1024("oak_with_stones", "board", [180.0, 420.0], 4.0);
     keeps_it_from_1024("medallion", "medallion", [640.0, 640.0], 4.0);
 }
 
+/// A stone is smaller than a pixel here.
 #[test]
 #[ignore = "takes minutes: a whole square of stones, and many samples in each pixel"]
-fn packed_pavements_keep_the_contract() {
-    keeps_it_from_1024("miyata_03", "a_random", [3000.0, 3000.0], 10.0);
-    keeps_it_from_1024("miyata_10", "base", [2000.0, 2000.0], 10.0);
-    keeps_it_from_1024("miyata_11", "c_corner", [1600.0, 1600.0], 10.0);
-    keeps_it_from_1024("miyata_12", "a_base", [1600.0, 1600.0], 10.0);
-    keeps_it_from_1024("miyata_01", "c_packed", [78_000.0, 76_000.0], 10.0);
+fn squares_of_stones_keep_the_contract() {
     keeps_it_from_1024("plaza_fischmarkt", "plaza", [78_000.0, 76_000.0], 4.0);
     keeps_it_from_1024("plaza_sechselaeuten", "plaza", [155_000.0, 182_000.0], 4.0);
+}
+
+#[test]
+#[ignore = "not kept yet: lines of a fifth of a pixel around cells of one to three pixels"]
+fn drawings_of_cells_keep_the_contract() {
+    keeps_it_from_1024("miyata_03", "a_random", [3000.0, 3000.0], 10.0);
+    keeps_it_from_1024("miyata_01", "c_packed", [78_000.0, 76_000.0], 10.0);
 }
 
 /// Near, and not within: a ramp sees noise that has been averaged within the pixel, and cannot know how much

@@ -1,7 +1,7 @@
 //! Arithmetic of recipes (`"= 0.03 * look.position"`) as fields.
 
 use super::Cancel;
-use crate::field::{Block, Field, InputColumn, Kernel, Sampling};
+use crate::field::{Block, Field, InputColumn, Kernel, Sampling, lost_of_sum};
 use crate::graph::{Arithmetic, Function, Link, Operator};
 use crate::key::KeyHasher;
 use std::sync::Arc;
@@ -84,6 +84,24 @@ impl Kernel for Apply {
             Operation::Binary(Operator::Multiply | Operator::Divide) | Operation::Call(_) => {
                 Sampling::Supersampled
             }
+        }
+    }
+
+    fn lost(&self, node: &Arc<str>, inputs: &[Field]) -> Option<Field> {
+        let one = Field::constant(1.0);
+        match (self.operation, inputs) {
+            (Operation::Negate, [a]) => a.lost().cloned(),
+            (Operation::Binary(Operator::Add | Operator::Subtract), [a, b]) => {
+                lost_of_sum(node, &[(one.clone(), a), (one, b)])
+            }
+            (Operation::Binary(Operator::Multiply), [a, b]) => {
+                lost_of_sum(node, &[(b.clone(), a), (a.clone(), b)])
+            }
+            (Operation::Binary(Operator::Divide), [a, b]) if a.lost().is_some() => {
+                let factor = apply(node, self.operation, vec![one, b.clone()]);
+                lost_of_sum(node, &[(factor, a)])
+            }
+            _ => None,
         }
     }
 

@@ -4,6 +4,7 @@
 //! that are supersampled take the mean of the samples of their own chart.
 
 use super::Field;
+use super::spread;
 use crate::key::KeyHasher;
 use crate::value::Domain;
 
@@ -58,13 +59,14 @@ pub(super) fn write_joins(
     }
 }
 
-/// Writes the change per sample along rows and columns: the mean of the steps to neighbours of the same chart, 0 where
-/// there are none.
+/// Writes the change per sample along rows and columns: the mean of the steps to neighbours of the same chart, or what
+/// `change` says of both, 0 where there are none.
 pub(super) fn write_spread(
     values: &[f32],
     joins: [&[f32]; 2],
     [width, height]: [usize; 2],
     along: &mut [Vec<f32>; 2],
+    change: impl Fn([f32; 3]) -> f32,
 ) {
     let area = width * height;
     for ((column, joins), step) in along.iter_mut().zip(joins).zip([1, width]) {
@@ -78,7 +80,7 @@ pub(super) fn write_spread(
             let before = index >= step && joins[index - step] != 0.0;
             let after = joins[index] != 0.0;
             *spread = match (before, after) {
-                (true, true) => 0.5 * (values[index + step] - values[index - step]),
+                (true, true) => change([values[index - step], values[index], values[index + step]]),
                 (false, true) => values[index + step] - values[index],
                 (true, false) => values[index] - values[index - step],
                 (false, false) => 0.0,
@@ -87,8 +89,23 @@ pub(super) fn write_spread(
     }
 }
 
+/// Writes the change per sample along rows and columns, between neighbours of the same chart if there are charts.
+pub(super) fn write_spread_between(
+    values: &[f32],
+    joins: Option<[&[f32]; 2]>,
+    shape: [usize; 2],
+    along: &mut [Vec<f32>; 2],
+    change: impl Fn([f32; 3]) -> f32,
+) {
+    match joins {
+        None => spread::write_spread(values, shape, along, change),
+        Some(joins) => write_spread(values, joins, shape, along, change),
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::spread::mean_change;
     use super::*;
 
     #[test]
@@ -102,7 +119,13 @@ mod tests {
         assert_eq!(joins[0][..4], [1.0, 0.0, 1.0, 0.0]);
         assert_eq!(joins[1][4..12], [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
         let mut along = [vec![], vec![]];
-        write_spread(&values, [&joins[0], &joins[1]], [4, 3], &mut along);
+        write_spread(
+            &values,
+            [&joins[0], &joins[1]],
+            [4, 3],
+            &mut along,
+            mean_change,
+        );
         assert!(along[0].iter().all(|change| *change == 2.0), "{along:?}");
         assert!(along[1].iter().all(|change| *change == 3.0), "{along:?}");
     }
@@ -112,7 +135,13 @@ mod tests {
         let mut joins = [vec![], vec![]];
         write_joins(&[&[1.0, 2.0, 3.0]], [3, 1], &mut joins);
         let mut along = [vec![], vec![]];
-        write_spread(&[5.0, 9.0, 1.0], [&joins[0], &joins[1]], [3, 1], &mut along);
+        write_spread(
+            &[5.0, 9.0, 1.0],
+            [&joins[0], &joins[1]],
+            [3, 1],
+            &mut along,
+            mean_change,
+        );
         assert_eq!(along, [vec![0.0; 3], vec![0.0; 3]]);
         write_joins(&[&[1.0, 1.0]], [1, 1], &mut joins);
         assert_eq!(joins, [vec![0.0; 2], vec![0.0; 2]]);

@@ -41,6 +41,8 @@ pub(super) enum Step {
         along: [usize; 2],
         /// Which neighbours are of one chart, where there are charts.
         joins: Option<[usize; 2]>,
+        /// Whether it is the larger of the changes to both sides where they differ much.
+        has_kinks: bool,
     },
     /// Which samples are of one chart with the next, along rows and columns.
     Joins {
@@ -105,7 +107,7 @@ pub(super) struct Compiler {
     charts: Charts,
     places: Places,
     columns_of: ColumnsOf,
-    spread_of: HashMap<usize, [usize; 2]>,
+    spread_of: HashMap<(usize, bool), [usize; 2]>,
     constant_of: HashMap<u32, usize>,
     constant_columns: HashSet<usize>,
     constants: Vec<(usize, f32)>,
@@ -279,7 +281,12 @@ impl Compiler {
         let spreads = inputs
             .iter()
             .enumerate()
-            .map(|(column, of)| kernel.reads_spread(column).then(|| self.spread(*of)))
+            .map(|(column, of)| {
+                let has_kinks = kernel.has_kinks(column) && !self.supersampling;
+                kernel
+                    .reads_spread(column)
+                    .then(|| self.spread(*of, has_kinks))
+            })
             .collect();
         let outputs: Vec<usize> = (0..kernel.width()).map(|_| self.new_column()).collect();
         self.sharing.note(&*kernel, &inputs, &outputs);
@@ -323,14 +330,19 @@ impl Compiler {
         self.supersampling && needs_samples
     }
 
-    fn spread(&mut self, of: usize) -> [usize; 2] {
-        if let Some(known) = self.spread_of.get(&of) {
+    fn spread(&mut self, of: usize, has_kinks: bool) -> [usize; 2] {
+        if let Some(known) = self.spread_of.get(&(of, has_kinks)) {
             return *known;
         }
         let along = [self.new_column(), self.new_column()];
         let joins = self.charts.joins;
-        self.steps.push(Step::Spread { of, along, joins });
-        self.spread_of.insert(of, along);
+        self.steps.push(Step::Spread {
+            of,
+            along,
+            joins,
+            has_kinks,
+        });
+        self.spread_of.insert((of, has_kinks), along);
         along
     }
 

@@ -41,7 +41,9 @@ pub(super) fn assign_margins(steps: &mut [Step], columns: usize) -> usize {
     let mut margins = vec![0; columns];
     for step in steps.iter_mut().rev() {
         match step {
-            Step::Spread { of, along, joins } => {
+            Step::Spread {
+                of, along, joins, ..
+            } => {
                 let distance = margins[along[0]].max(margins[along[1]]) + 1;
                 for read in joins.iter().flatten().chain([&*of]) {
                     margins[*read] = margins[*read].max(distance);
@@ -71,11 +73,12 @@ pub(super) fn assign_margins(steps: &mut [Step], columns: usize) -> usize {
 
 /// Whether an input's neighbours are looked at to see where the step has to be supersampled.
 fn looks_around(step: &KernelStep, input: usize) -> bool {
-    step.within.is_some()
-        && match step.kernel.sampling() {
-            Sampling::Filtered => false,
-            Sampling::FilteredWhereEven { column, .. }
-            | Sampling::FilteredWhereStraight { column, .. } => column == input,
-            Sampling::Supersampled => true,
-        }
+    let is_deciding = match step.kernel.sampling() {
+        Sampling::Filtered => false,
+        Sampling::FilteredWhereEven { column, .. }
+        | Sampling::FilteredWhereStraight { column, .. } => column == input,
+        Sampling::Supersampled => true,
+    };
+    let is_width = |(column, _)| column == input;
+    step.within.is_some() && (is_deciding || step.kernel.widest().is_some_and(is_width))
 }

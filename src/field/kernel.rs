@@ -1,10 +1,11 @@
 //! What a node's maths looks like to the engine: columns in, columns out.
 
-use super::Alternatives;
+use super::{Alternatives, Field};
 use crate::key::KeyHasher;
 use fearless_simd::Level;
 use std::fmt::Debug;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// How a kernel deals with what happens between two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,9 +52,22 @@ pub trait Kernel: Send + Sync + Debug {
         false
     }
 
+    /// Whether input column `column`, whose spread it reads, has kinks, as a distance has in the middle between two edges:
+    /// within pixels the spread is there the larger of the changes to both sides, and not their mean, which may be 0.
+    fn has_kinks(&self, column: usize) -> bool {
+        let _ = column;
+        false
+    }
+
     /// How it deals with what happens between two samples.
     fn sampling(&self) -> Sampling {
         Sampling::Filtered
+    }
+
+    /// A column in with a part of the position, and a width in mm: where samples are supersampled and several times as wide,
+    /// they are looked at the more closely. For what has details of a size that is known.
+    fn widest(&self) -> Option<(usize, f32)> {
+        None
     }
 
     /// Whether the mean over a supersampled pixel takes in samples of other charts: so where a picture shows what lies
@@ -64,6 +78,13 @@ pub trait Kernel: Send + Sync + Debug {
 
     /// The inputs of which it reads one alternative in each sample, if it has such: the others need not be computed.
     fn alternatives(&self) -> Option<Alternatives> {
+        None
+    }
+
+    /// What the kernel of `node` averages away within pixels, or lets through of what was lost of its inputs, as
+    /// [`Field::lost`] of its columns.
+    fn lost(&self, node: &Arc<str>, inputs: &[Field]) -> Option<Field> {
+        let _ = (node, inputs);
         None
     }
 

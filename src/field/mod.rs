@@ -10,6 +10,7 @@ mod cost;
 mod given;
 mod guards;
 mod kernel;
+mod lost;
 mod places;
 mod points;
 mod run;
@@ -24,6 +25,7 @@ pub use compile::Program;
 pub(crate) use given::names_read;
 pub use guards::Alternatives;
 pub use kernel::{Block, InputColumn, Kernel, Sampling};
+pub use lost::lost_of_sum;
 pub(crate) use points::at_points;
 pub use run::{ColumnCache, Columns, RunContext, Scratch, Work};
 pub(crate) use samples::remainder;
@@ -45,6 +47,10 @@ struct Expression {
     width: usize,
     domain: Domain,
     operation: Operation,
+    /// See [`Field::lost`].
+    lost: Option<Field>,
+    /// See [`Field::widest`].
+    widest: Option<(Field, f32)>,
 }
 
 /// How an expression gets its columns.
@@ -135,17 +141,17 @@ impl Field {
             "the kernel of `{node}` reads fields of different domains"
         );
         let width = kernel.width();
+        let (lost, widest) = (
+            kernel.lost(node, &inputs),
+            lost::widest_of(&*kernel, &inputs),
+        );
         let node = Arc::clone(node);
-        Field::new(
-            key.finish(),
-            width,
-            domain,
-            Operation::Kernel {
-                kernel,
-                inputs,
-                node,
-            },
-        )
+        let operation = Operation::Kernel {
+            kernel,
+            inputs,
+            node,
+        };
+        Field::new(key.finish(), width, domain, operation).having(lost, widest)
     }
 
     /// Columns `first .. first + width` of this field.
@@ -158,15 +164,13 @@ impl Field {
             .whole(first as i64)
             .whole(width as i64)
             .finish();
-        Field::new(
-            key,
-            width,
-            self.domain(),
-            Operation::Part {
-                of: self.clone(),
-                first,
-            },
-        )
+        let lost = self.lost().map(|lost| lost.part(first, width));
+        let widest = self.widest().cloned();
+        let operation = Operation::Part {
+            of: self.clone(),
+            first,
+        };
+        Field::new(key, width, self.domain(), operation).having(lost, widest)
     }
 
     /// This field where `position` points: the way from a plane into the solid it cuts.
@@ -210,7 +214,9 @@ impl Field {
             field: self.clone(),
             opening: Arc::clone(opening),
         };
-        Field::new(key, self.width(), opening.position.domain(), operation)
+        let lost = self.lost().map(|lost| lost.through(opening));
+        let widest = self.widest().map(|(of, by)| (of.through(opening), *by));
+        Field::new(key, self.width(), opening.position.domain(), operation).having(lost, widest)
     }
 
     /// The hash that identifies the field's values.
@@ -242,7 +248,17 @@ impl Field {
             width,
             domain,
             operation,
+            lost: None,
+            widest: None,
         }))
+    }
+
+    /// This field, just made, with what is known of its pixels.
+    fn having(mut self, lost: Option<Field>, widest: Option<(Field, f32)>) -> Field {
+        if let Some(expression) = Arc::get_mut(&mut self.0) {
+            (expression.lost, expression.widest) = (lost, widest);
+        }
+        self
     }
 }
 
@@ -285,14 +301,23 @@ impl Operation {
     }
 }
 
+impl Expression {
+    /// Moves all fields this one depends on into `fields`.
+    fn release_into(&mut self, fields: &mut Vec<Field>) {
+        self.operation.release_into(fields);
+        fields.extend(self.lost.take());
+        fields.extend(self.widest.take().map(|(field, _)| field));
+    }
+}
+
 impl Drop for Expression {
     /// Releases long chains in a loop: the default would recurse once for every link.
     fn drop(&mut self) {
         let mut pending = Vec::new();
-        self.operation.release_into(&mut pending);
+        self.release_into(&mut pending);
         while let Some(Field(shared)) = pending.pop() {
             if let Ok(mut expression) = Arc::try_unwrap(shared) {
-                expression.operation.release_into(&mut pending);
+                expression.release_into(&mut pending);
             }
         }
     }

@@ -141,13 +141,28 @@ impl Program {
             let is_wanted = |guard: &Guard| guard.is_wanted(scratch.column(guard.column));
             match (step, stored) {
                 _ if !needed || !guard.as_ref().is_none_or(is_wanted) => {}
-                (Step::Spread { of, along, joins }, _) => {
+                (
+                    Step::Spread {
+                        of,
+                        along,
+                        joins,
+                        has_kinks,
+                    },
+                    _,
+                ) => {
                     let shape = shape(samples, context);
                     write_columns(scratch, *along, |scratch, columns| {
                         let values = scratch.column(*of);
-                        match joins.map(|joins| joins.map(|slot| scratch.column(slot))) {
-                            None => spread::write_spread(values, shape, columns),
-                            Some(joins) => charts::write_spread(values, joins, shape, columns),
+                        let joins = joins.map(|joins| joins.map(|slot| scratch.column(slot)));
+                        match *has_kinks {
+                            true => {
+                                let change = spread::change_at_kinks;
+                                charts::write_spread_between(values, joins, shape, columns, change);
+                            }
+                            false => {
+                                let change = spread::mean_change;
+                                charts::write_spread_between(values, joins, shape, columns, change);
+                            }
                         }
                     });
                 }

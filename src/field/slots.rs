@@ -135,7 +135,9 @@ impl Step {
         let rename = |column: &mut usize| *column = slot_of[*column];
         match self {
             Step::Joins { charts, joins } => charts.iter_mut().chain(joins).for_each(rename),
-            Step::Spread { of, along, joins } => {
+            Step::Spread {
+                of, along, joins, ..
+            } => {
                 rename(of);
                 joins.iter_mut().flatten().for_each(rename);
                 along.iter_mut().for_each(rename);

@@ -3,9 +3,36 @@
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
-/// Writes the change per sample along rows and columns of every grid: central differences inside,
-/// one-sided ones at the rim, 0 where a grid has no neighbours.
-pub(super) fn write_spread(values: &[f32], [width, height]: [usize; 2], along: &mut [Vec<f32>; 2]) {
+/// The mean of the changes to both neighbours.
+#[inline(always)]
+pub(super) fn mean_change([before, _, after]: [f32; 3]) -> f32 {
+    0.5 * (after - before)
+}
+
+/// The mean, or the larger of both changes where they have little in common. Within pixels that is a kink mostly, as that of a
+/// distance in the middle between two edges, of which the mean would say that nothing changes.
+#[inline(always)]
+pub(super) fn change_at_kinks([before, here, after]: [f32; 3]) -> f32 {
+    let [to, from] = [here - before, after - here];
+    let (smaller, larger) = match to.abs() < from.abs() {
+        true => (to, from),
+        false => (from, to),
+    };
+    // The other way, or less than half of it.
+    match smaller * larger < 0.5 * larger * larger {
+        true => larger,
+        false => 0.5 * (after - before),
+    }
+}
+
+/// Writes the change per sample along rows and columns of every grid: as `change` says inside, one-sided at the rim, 0 where
+/// a grid has no neighbours.
+pub(super) fn write_spread(
+    values: &[f32],
+    [width, height]: [usize; 2],
+    along: &mut [Vec<f32>; 2],
+    change: impl Fn([f32; 3]) -> f32,
+) {
     let [rows, columns] = along;
     rows.clear();
     rows.resize(values.len(), 0.0);
@@ -17,32 +44,36 @@ pub(super) fn write_spread(values: &[f32], [width, height]: [usize; 2], along: &
         if width > 2 {
             for y in 0..height {
                 let row = y * width..(y + 1) * width;
-                differences_in_row(&grid[row.clone()], &mut rows[start..start + area][row]);
+                let out = &mut rows[start..start + area][row.clone()];
+                differences_in_row(&grid[row], out, &change);
             }
         }
         if height > 2 {
-            differences_between_rows(grid, width, &mut columns[start..start + area]);
+            differences_between_rows(grid, width, &mut columns[start..start + area], &change);
         }
     }
 }
 
-fn differences_in_row(row: &[f32], out: &mut [f32]) {
+fn differences_in_row(row: &[f32], out: &mut [f32], change: &impl Fn([f32; 3]) -> f32) {
     let last = row.len() - 1;
-    for ((out, before), after) in out[1..last].iter_mut().zip(row).zip(&row[2..]) {
-        *out = 0.5 * (after - before);
+    let neighbours = row.iter().zip(&row[1..]).zip(&row[2..]);
+    for (out, ((before, here), after)) in out[1..last].iter_mut().zip(neighbours) {
+        *out = change([*before, *here, *after]);
     }
     out[0] = row[1] - row[0];
     out[last] = row[last] - row[last - 1];
 }
 
-fn differences_between_rows(grid: &[f32], width: usize, out: &mut [f32]) {
+fn differences_between_rows(
+    grid: &[f32],
+    width: usize,
+    out: &mut [f32],
+    change: &impl Fn([f32; 3]) -> f32,
+) {
     let inner = grid.len() - width;
-    for ((out, before), after) in out[width..inner]
-        .iter_mut()
-        .zip(grid)
-        .zip(&grid[2 * width..])
-    {
-        *out = 0.5 * (after - before);
+    let neighbours = grid.iter().zip(&grid[width..]).zip(&grid[2 * width..]);
+    for (out, ((before, here), after)) in out[width..inner].iter_mut().zip(neighbours) {
+        *out = change([*before, *here, *after]);
     }
     for x in 0..width {
         out[x] = grid[x + width] - grid[x];
@@ -131,6 +162,13 @@ pub(super) fn list_uneven<S: Simd>(
     }
 }
 
+/// How much the values change from a sample of a grid to the next; the sample is not at the rim.
+pub(super) fn change(values: &[f32], width: usize, sample: usize) -> f32 {
+    let row = (values[sample + 1] - values[sample - 1]) * 0.5;
+    let column = (values[sample + width] - values[sample - width]) * 0.5;
+    (row * row + column * column).sqrt()
+}
+
 /// Lists the samples that differ from any of their neighbours in a row or column, in any of some columns.
 #[simd]
 pub(super) fn list_varying<S: Simd>(
@@ -198,7 +236,7 @@ mod tests {
             .map(|i| 2.0 * (i % 7) as f32 - 3.0 * (i / 7) as f32)
             .collect();
         let mut along = [vec![], vec![]];
-        write_spread(&values, [7, 5], &mut along);
+        write_spread(&values, [7, 5], &mut along, mean_change);
         assert!(along[0].iter().all(|d| *d == 2.0));
         assert!(along[1].iter().all(|d| *d == -3.0));
         assert!(bent(&values, 7, [0.0; 2]).is_empty());
@@ -235,9 +273,19 @@ mod tests {
     }
 
     #[test]
+    fn kinks_have_the_larger_change() {
+        assert_eq!(change_at_kinks([3.0, 1.0, 2.0]), -2.0);
+        assert_eq!(change_at_kinks([-1.0, 1.0, 0.0]), 2.0);
+        assert_eq!(change_at_kinks([1.0, 1.0, 4.0]), 3.0);
+        assert_eq!(change_at_kinks([0.0, 2.0, 5.0]), 2.5);
+        assert_eq!(change_at_kinks([4.0, 4.0, 4.0]), 0.0);
+        assert_eq!(mean_change([3.0, 1.0, 2.0]), -0.5);
+    }
+
+    #[test]
     fn single_points_have_no_spread() {
         let mut along = [vec![], vec![]];
-        write_spread(&[1.0, 5.0, 9.0], [1, 1], &mut along);
+        write_spread(&[1.0, 5.0, 9.0], [1, 1], &mut along, mean_change);
         assert_eq!(along, [vec![0.0; 3], vec![0.0; 3]]);
     }
 }

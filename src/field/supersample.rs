@@ -7,18 +7,24 @@ use super::spread::{self, Inside};
 use super::within::{Member, Within};
 use super::{PixelGrid, Program, Samples, Sampling};
 use fearless_simd::{Level, dispatch};
+use std::collections::BTreeMap;
 
 /// Samples along each side of a supersampled pixel.
 const SIDE: usize = 4;
 
-/// Pixels that are supersampled in one go: their samples are a block of some thousand.
-const PIXELS_AT_ONCE: usize = 128;
+/// Samples along each side of pixels that are more than so many times as wide as a kernel says.
+const FINER: [(f32, usize); 2] = [(14.0, 16), (8.0, 8)];
+
+/// Samples that are computed in one go, without margins.
+const SAMPLES_AT_ONCE: usize = 2048;
 
 /// What a program for single pixels has given in this run.
 #[derive(Debug, Default)]
 pub(super) struct Averages {
     /// For each pixel the row of its means, [`UNKNOWN`] or [`NONE`]; empty before the first.
     rows: Vec<u32>,
+    /// For each pixel how many samples along a side they are means of.
+    sides: Vec<u8>,
     /// The means of all columns of the program, row after row.
     means: Vec<f32>,
 }
@@ -33,13 +39,15 @@ impl Averages {
     /// Forgets everything, for another run.
     pub(super) fn clear(&mut self) {
         self.rows.clear();
+        self.sides.clear();
         self.means.clear();
     }
 
-    /// Those of the pixels that are not known yet.
-    fn unknown(&mut self, pixels: &[u32], length: usize) -> Vec<u32> {
+    /// Those of the pixels that are not known from `side` samples along a side or more.
+    fn unknown(&mut self, pixels: &[u32], side: usize, length: usize) -> Vec<u32> {
         self.rows.resize(length, UNKNOWN);
-        let is_unknown = |pixel: &u32| self.rows[*pixel as usize] == UNKNOWN;
+        self.sides.resize(length, 0);
+        let is_unknown = |pixel: &u32| usize::from(self.sides[*pixel as usize]) < side;
         pixels.iter().copied().filter(is_unknown).collect()
     }
 
@@ -68,16 +76,19 @@ pub(super) fn supersample(
         return;
     }
     let mut averages = std::mem::take(scratch.averages(member.within));
-    let unknown = averages.unknown(&pixels, grid.len());
-    if !unknown.is_empty()
-        && let Some(program) = within.program(context.cancel)
-    {
-        let run = InnerRun {
-            program,
-            fields: within.fields(),
-            charts: &step.charts,
-        };
-        run.average(scratch, samples, context, &unknown, &mut averages);
+    for (side, pixels) in by_side(scratch, step, grid.width, &pixels) {
+        let unknown = averages.unknown(&pixels, side, grid.len());
+        if !unknown.is_empty()
+            && let Some(program) = within.program(context.cancel)
+        {
+            let run = InnerRun {
+                program,
+                fields: within.fields(),
+                charts: &step.charts,
+                side,
+            };
+            run.average(scratch, samples, context, &unknown, &mut averages);
+        }
     }
     let width = within.width();
     for (column, output) in (member.column..).zip(outputs) {
@@ -97,6 +108,8 @@ struct InnerRun<'a> {
     fields: usize,
     /// The slots of the pixels' charts, if means stay in them.
     charts: &'a [usize],
+    /// Samples along each side of a pixel.
+    side: usize,
 }
 
 impl InnerRun<'_> {
@@ -113,8 +126,8 @@ impl InnerRun<'_> {
             return;
         };
         let (target, mut inner) = (*target, scratch.within.take().unwrap_or_default());
-        for pixels in pixels.chunks(PIXELS_AT_ONCE) {
-            let grid = grid.within_pixels(pixels, SIDE, self.program.margin());
+        for pixels in pixels.chunks(SAMPLES_AT_ONCE / (self.side * self.side)) {
+            let grid = grid.within_pixels(pixels, self.side, self.program.margin());
             let area = grid.width * grid.height;
             let samples = Samples::Grid { target, grid };
             self.program.run(&samples, &mut inner, context);
@@ -146,7 +159,7 @@ impl InnerRun<'_> {
             (inside, scratch.column(self.charts[index]))
         };
         let charts: Vec<_> = (0..self.charts.len()).map(chart).collect();
-        let all = inside(self.program.margin());
+        let all = inside(self.side, self.program.margin());
         for (index, pixel) in pixels.iter().enumerate() {
             let is_of_chart = |sample: &usize| {
                 charts.iter().all(|(inside, whole)| {
@@ -157,6 +170,7 @@ impl InnerRun<'_> {
                 (!charts.is_empty()).then(|| all.iter().copied().filter(is_of_chart).collect());
             let chosen: &Vec<usize> = of_chart.as_ref().unwrap_or(&all);
             let row = (averages.means.len() / columns.len()) as u32;
+            averages.sides[*pixel as usize] = self.side as u8;
             averages.rows[*pixel as usize] = if chosen.is_empty() { NONE } else { row };
             if !chosen.is_empty() {
                 let values = |column: &&[f32]| mean(&column[index * area..][..area], chosen);
@@ -207,11 +221,32 @@ fn pixels_to_supersample(
     pixels
 }
 
-/// A pixel's samples without their margin.
-fn inside(margin: usize) -> Vec<usize> {
-    let width = SIDE + 2 * margin;
-    let rows = (margin..margin + SIDE).map(|row| row * width + margin);
-    rows.flat_map(|start| start..start + SIDE).collect()
+/// The pixels by how many samples along their sides they need, in order of these.
+fn by_side(
+    scratch: &Scratch,
+    step: &KernelStep,
+    width: usize,
+    pixels: &[u32],
+) -> BTreeMap<usize, Vec<u32>> {
+    let Some((column, widest)) = step.kernel.widest() else {
+        return BTreeMap::from([(SIDE, pixels.to_vec())]);
+    };
+    let values = scratch.column(step.inputs[column]);
+    let mut by_side: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+    for pixel in pixels {
+        let change = spread::change(values, width, *pixel as usize);
+        let finer = FINER.iter().find(|(times, _)| change > times * widest);
+        let side = finer.map_or(SIDE, |(_, side)| *side);
+        by_side.entry(side).or_default().push(*pixel);
+    }
+    by_side
+}
+
+/// A pixel's samples, so many along each side, without their margin.
+fn inside(side: usize, margin: usize) -> Vec<usize> {
+    let width = side + 2 * margin;
+    let rows = (margin..margin + side).map(|row| row * width + margin);
+    rows.flat_map(|start| start..start + side).collect()
 }
 
 /// The mean of some samples, added up in their order.

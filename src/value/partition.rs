@@ -40,6 +40,9 @@ pub struct Partition {
     pub period: Option<DVec2>,
 }
 
+/// How far the corners of cells that touch are apart at most, as a share of their coordinates: a period is not exact.
+const TOUCHING: f64 = 1e-12;
+
 /// Most cells, most corners, and the largest coordinate in mm.
 const MOST_CELLS: usize = 16_000_000;
 const MOST_CORNERS: usize = 200_000_000;
@@ -88,6 +91,25 @@ impl Partition {
             around[1] = around[1].max(from.max(to) + reach);
         }
         around
+    }
+
+    /// Whether cells share corners with their neighbours, as they do unless they were inset. One edge says it of all.
+    pub fn touches(&self) -> bool {
+        let Some(corner) =
+            (0..self.neighbours.len()).find(|corner| self.neighbours[*corner] != Partition::NONE)
+        else {
+            return false;
+        };
+        let is_there = |other: &DVec2| {
+            let mut apart = self.corners[corner] - *other;
+            if let Some(period) = self.period {
+                apart -= (apart / period).round() * period;
+            }
+            apart.length() <= TOUCHING * self.corners[corner].length().max(1.0)
+        };
+        let neighbour = self.neighbours[corner] as usize;
+        let mut rings = self.rings_of(neighbour);
+        rings.any(|ring| self.corners[ring].iter().any(is_there))
     }
 
     /// Identifies all that the partition is.
@@ -183,6 +205,24 @@ mod tests {
         assert_eq!(squares.neighbours_of(0), [1]);
         assert_eq!(squares.neighbours_of(1), [0]);
         assert_eq!(squares.bulge(3), 0.0);
+    }
+
+    #[test]
+    fn cells_touch_unless_they_are_inset() {
+        let mut apart = squares();
+        assert!(apart.touches());
+        apart.corners[4..]
+            .iter_mut()
+            .for_each(|corner| corner.x += 0.1);
+        assert!(!apart.touches());
+        // The right one lies a period farther.
+        apart.corners[4..]
+            .iter_mut()
+            .for_each(|corner| corner.x += 3.9);
+        apart.period = Some(DVec2::new(4.0, 1.0));
+        assert!(apart.touches());
+        apart.neighbours = vec![Partition::NONE; 8];
+        assert!(!apart.touches());
     }
 
     #[test]

@@ -4,10 +4,11 @@
 //! straight continuation are averaged exactly over what a pixel covers: see `profile`.
 
 use super::profile::{Along, Ends, Piece, Profile, hermite};
-use crate::field::{Block, Kernel};
+use crate::field::{Block, Field, Kernel, lost_of_sum};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::value::{Type, Unit, Value};
+use std::sync::Arc;
 
 /// Brings a number from one range to another.
 pub static KIND: Kind = Kind {
@@ -120,6 +121,12 @@ struct Line {
     to: [f64; 2],
 }
 
+impl Line {
+    fn slope(&self) -> f64 {
+        (self.to[1] - self.to[0]) / (self.from[1] - self.from[0])
+    }
+}
+
 impl Kernel for Line {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("remap line").whole(i64::from(KIND.version));
@@ -132,8 +139,12 @@ impl Kernel for Line {
         1
     }
 
+    fn lost(&self, node: &Arc<str>, inputs: &[Field]) -> Option<Field> {
+        lost_of_sum(node, &[(Field::constant(self.slope()), &inputs[0])])
+    }
+
     fn evaluate(&self, block: &mut Block<'_>) {
-        let slope = (self.to[1] - self.to[0]) / (self.from[1] - self.from[0]);
+        let slope = self.slope();
         for (output, value) in block.outputs[0].iter_mut().zip(block.inputs[0].values) {
             *output = (self.to[0] + (f64::from(*value) - self.from[0]) * slope) as f32;
         }

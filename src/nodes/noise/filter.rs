@@ -73,6 +73,15 @@ pub(super) fn weight<S: Simd>(
     (weight - LEAST).max_precise(0.0)
 }
 
+/// The variance that an octave has within a pixel, as a share of all it has: what the noise in the centre does not say of
+/// the mean over the pixel.
+#[inline(always)]
+pub(super) fn lost<S: Simd>(simd: S, squares: [S::f32s; 2]) -> S::f32s {
+    let [one, ..] = DIVISIONS;
+    let divisor = one.divisor::<S>(squares[0]) * one.divisor::<S>(squares[1]);
+    S::f32s::splat(simd, 1.0) - S::f32s::splat(simd, 1.0) / (divisor * divisor)
+}
+
 /// The squares of the sides from which on a pixel is divided in 2 and in 4.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steps(pub(super) [f32; 2]);

@@ -5,6 +5,7 @@ mod filter;
 mod form;
 mod interface;
 mod lattice;
+mod lost;
 mod octaves;
 mod period;
 pub mod plane_noise;

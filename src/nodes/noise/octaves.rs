@@ -3,11 +3,13 @@
 use super::filter::{DIVISIONS, Division, Steps, weight};
 use super::form::{Form, next_strength};
 use super::lattice::{BORDER, gradient_noise, variant};
-use crate::field::{Block, InputColumn, Kernel};
+use super::lost::Lost;
+use crate::field::{Block, Field, InputColumn, Kernel};
 use crate::key::KeyHasher;
 use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
+use std::sync::Arc;
 
 /// Raised whenever a result changes.
 pub(super) const VERSION: u32 = 2;
@@ -29,7 +31,7 @@ pub(super) struct Octave {
 }
 
 /// From the position in mm to one noise or several.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct NoiseKernel {
     /// Cells of the first octave per mm.
     pub(super) scale: [f32; 3],
@@ -116,6 +118,24 @@ impl NoiseKernel {
             }
         }
         pixels
+    }
+
+    /// The squares of the lengths of pixels' sides from `start` on, in cells of the first octave.
+    #[inline(always)]
+    pub(super) fn squares<S: Simd>(
+        &self,
+        simd: S,
+        columns: &[InputColumn<'_>],
+        start: usize,
+    ) -> [S::f32s; 2] {
+        let mut squares = [S::f32s::splat(simd, 0.0); 2];
+        for (column, scale) in columns.iter().zip(self.scale) {
+            for (square, spread) in squares.iter_mut().zip(column.spread) {
+                let side = S::f32s::from_slice(simd, &spread[start..start + S::f32s::LEN]) * scale;
+                *square += side * side;
+            }
+        }
+        squares
     }
 
     /// The coordinate of the first octave, in cells, beyond which noise is that of the border.
@@ -234,6 +254,12 @@ impl Kernel for NoiseKernel {
 
     fn reads_spread(&self, column: usize) -> bool {
         column < 3
+    }
+
+    fn lost(&self, node: &Arc<str>, inputs: &[Field]) -> Option<Field> {
+        // Of what is folded it is not known.
+        (self.form == Form::Soft)
+            .then(|| Field::kernel(node, Arc::new(Lost(self.clone())), inputs.to_vec()))
     }
 
     fn nanoseconds(&self) -> f32 {

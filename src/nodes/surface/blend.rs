@@ -16,7 +16,7 @@
 
 pub(super) mod channels;
 
-use super::mix::{Mix, Within};
+use super::mix::{Within, mixed};
 use crate::field::{Block, Field, Kernel};
 use crate::key::KeyHasher;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output, common_domain};
@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// Blends two materials.
 pub static KIND: Kind = Kind {
     name: "blend",
-    version: 1,
+    version: 2,
     about: "Blends two whole materials by a mask, or by which of them is higher. Extras that one of them lacks are 0 \
             or black there.",
     source: "own construction; by height after Mishkinis 2013 (terrain texture splatting), with the S of Perlin 1985",
@@ -87,22 +87,14 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let pairs = channels::pairs(a, b, ["a", "b"], inputs)?;
     let blended = |(name, [a, b]): (String, [Field; 2])| {
         let is_direction = Material::is_direction(&name, &a);
-        let width = a.width();
         let within = match [&a, &b].iter().all(|field| field.as_constant().is_some()) {
             true => Within::Straight,
             false => Within::Even,
         };
-        let fields = vec![a, b, share.clone()];
+        let fields = [a, b, share.clone()];
         let field = match is_direction {
-            true => build.kernel(channels::Axes, fields),
-            false => build.kernel(
-                Mix {
-                    mode: "normal",
-                    width,
-                    within,
-                },
-                fields,
-            ),
+            true => build.kernel(channels::Axes, fields.into()),
+            false => mixed(build, "normal", within, fields),
         };
         (name, field)
     };

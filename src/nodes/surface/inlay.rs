@@ -140,9 +140,9 @@ pub static KIND: Kind = Kind {
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let (ground, of) = (inputs.material("ground"), inputs.material("of"));
-    let [border, cell] = outline(inputs, build)?;
+    let outline = outline(inputs, build)?;
     let cut = Cut::read(inputs);
-    let zones = build.kernel(Zones::new(&cut), vec![border, cell]);
+    let zones = build.kernel(Zones::new(&cut), outline.into());
     let shares = zones.part(0, 2);
     let seen = build.kernel(Seen, vec![shares.clone()]);
     let channels = pairs(ground, of, ["ground", "of"], inputs)?;
@@ -192,7 +192,7 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     ])
 }
 
-/// The distance to the outline, above 0 inside, and which cell is at a point.
+/// The distance to the outline, above 0 inside, and the id of the cell that touches it there, -1 for none.
 fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure> {
     let stated = ["region", "cells"].map(|name| inputs.get(name).is_some());
     match stated {
@@ -212,7 +212,7 @@ fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure
     }
 }
 
-/// The distance to the border, and which cell is at a point. Warns if all of them are beside the ground.
+/// The distance to the border, and which cell is beyond it, -1 for none. Warns if all of them are beside the ground.
 fn of_cells(cells: &Arc<Partition>, inputs: &Inputs<'_>, build: &Build<'_>) -> [Field; 2] {
     let is_beside = |[width, height]: [f64; 2]| {
         let beside = |cell: usize| {
@@ -226,5 +226,9 @@ fn of_cells(cells: &Arc<Partition>, inputs: &Inputs<'_>, build: &Build<'_>) -> [
             .warn("nothing is let in: the outline lies beside the ground, which begins at (0, 0)");
     }
     let found = Found::new(build, cells);
-    [found.border(), found.index()]
+    let beyond = match cells.touches() {
+        true => found.beyond(),
+        false => Field::constant(-1.0),
+    };
+    [found.border(), beyond]
 }

@@ -148,3 +148,38 @@ fn nothing_is_left_of_noise_much_finer_than_a_pixel() {
         );
     }
 }
+
+/// What is lost of noise in pixels from a quarter to four times the features: the variance of fine samples within them.
+#[test]
+fn what_is_lost_is_the_variance_within_pixels() {
+    let noise = Noise {
+        octaves: 2,
+        ..PLAIN
+    };
+    let value = noise.value();
+    let count = 24;
+    for side in [0.75, 1.5, 3.0, 6.0, 12.0] {
+        let fine = Plane::oblique([side / FINENESS as f64; 2]);
+        let fine = painted(&value, &fine, count * FINENESS);
+        let mut within = 0.0;
+        for pixel in 0..count * count {
+            let corner = (pixel / count * count * FINENESS + pixel % count) * FINENESS;
+            let rows = (0..FINENESS).map(|row| corner + row * count * FINENESS);
+            let samples: Vec<f32> = rows
+                .flat_map(|start| fine[start..start + FINENESS].to_vec())
+                .collect();
+            within += statistics(&samples)[1] / (count * count) as f64;
+        }
+        let lost = value.lost().expect("noise loses");
+        let lost = f64::from(painted(lost, &Plane::oblique([side; 2]), 3)[4]);
+        assert!(
+            (lost - within).abs() < 0.2 * within + 0.0005,
+            "{side}: {lost}, not {within}"
+        );
+    }
+    let folded = Noise {
+        form: "billow",
+        ..noise
+    };
+    assert!(folded.value().lost().is_none());
+}

@@ -99,6 +99,10 @@ impl Kernel for Relief {
         divided(7, self.widest)
     }
 
+    fn widest(&self) -> Option<(usize, f32)> {
+        Some((7, self.widest))
+    }
+
     fn evaluate(&self, block: &mut Block<'_>) {
         let [height, range, cover, depth, bed, chips, relief] =
             [0, 1, 2, 3, 4, 5, 6].map(|column| block.inputs[column].values);
@@ -177,6 +181,10 @@ impl Kernel for OfStone {
     fn sampling(&self) -> Sampling {
         self.widest
             .map_or(Sampling::Filtered, |widest| divided(3, widest))
+    }
+
+    fn widest(&self) -> Option<(usize, f32)> {
+        self.widest.map(|widest| (3, widest))
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {

@@ -1,4 +1,7 @@
 //! Ground, gap and inlay as a profile of the distance to the outline.
+//!
+//! Cells that touch have no ground between them: beyond the border is the inlay of the next cell, so the profile is that of
+//! the distance on both sides.
 
 use super::KIND;
 use crate::field::{Alternatives, Block, Kernel, Sampling};
@@ -38,6 +41,33 @@ impl Cut {
         }
     }
 
+    /// The profile of cells that touch: that of the distance without its sign.
+    fn mirrored(&self) -> (Vec<Piece<4>>, f64) {
+        let (pieces, end) = self.profile();
+        let mut inside: Vec<Piece<4>> = vec![];
+        for mut piece in pieces {
+            if piece.start <= 0.0 {
+                inside.clear();
+                for cubic in &mut piece.cubic {
+                    cubic[0] -= cubic[1] * piece.start;
+                }
+                piece.start = 0.0;
+            }
+            inside.push(piece);
+        }
+        let ends = inside.iter().skip(1).map(|next| next.start).chain([end]);
+        let turned = |(piece, end): (&Piece<4>, f64)| Piece {
+            start: -end,
+            cubic: piece
+                .cubic
+                .map(|[start, slope, ..]| [start + slope * (end - piece.start), -slope, 0.0, 0.0]),
+        };
+        let mut all: Vec<Piece<4>> = inside.iter().zip(ends).map(turned).collect();
+        all.reverse();
+        all.extend(inside);
+        (all, end)
+    }
+
     /// Shares of glue and of what is let in, what is added to the height, and what is left of the light.
     fn profile(&self) -> (Vec<Piece<4>>, f64) {
         let half = 0.5 * self.gap;
@@ -71,19 +101,20 @@ impl Cut {
     }
 }
 
-/// The zones around an outline. Columns in: distance to it, number of the cell. Columns out: share of glue, share of what
+/// The zones around an outline. Columns in: distance to it, id of the cell that touches it or -1. Columns out: share of glue, share of what
 /// is let in, what is added to the height in mm, what is left of the light.
 #[derive(Debug)]
 pub(super) struct Zones {
     profile: Profile<4>,
+    /// Where a cell touches the outline.
+    mirrored: Profile<4>,
 }
 
 impl Zones {
     pub(super) fn new(cut: &Cut) -> Zones {
-        let (pieces, end) = cut.profile();
-        Zones {
-            profile: Profile::new(pieces, end, Ends::Stay),
-        }
+        let [profile, mirrored] = [cut.profile(), cut.mirrored()]
+            .map(|(pieces, end)| Profile::new(pieces, end, Ends::Stay));
+        Zones { profile, mirrored }
     }
 }
 
@@ -91,6 +122,7 @@ impl Kernel for Zones {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("zones of inlay").whole(i64::from(KIND.version));
         self.profile.add_to_key(key);
+        self.mirrored.add_to_key(key);
     }
 
     fn width(&self) -> usize {
@@ -101,12 +133,13 @@ impl Kernel for Zones {
         column == 0
     }
 
+    fn has_kinks(&self, column: usize) -> bool {
+        column == 0
+    }
+
     fn sampling(&self) -> Sampling {
-        // Where another cell begins, the distance has a kink.
-        Sampling::FilteredWhereEven {
-            column: 1,
-            absolute: 0.5,
-        }
+        // Where another cell or another edge is nearer, the distance has a kink.
+        self.profile.sampling()
     }
 
     fn nanoseconds(&self) -> f32 {
@@ -114,10 +147,14 @@ impl Kernel for Zones {
     }
 
     fn evaluate(&self, block: &mut Block<'_>) {
-        let border = block.inputs[0];
+        let (border, beyond) = (block.inputs[0], block.inputs[1].values);
         for (index, value) in border.values.iter().enumerate() {
             let spread = border.spread.map(|along| f64::from(along[index]));
-            let means = self.profile.mean(f64::from(*value), spread);
+            let profile = match beyond[index] < 0.0 {
+                true => &self.profile,
+                false => &self.mirrored,
+            };
+            let means = profile.mean(f64::from(*value), spread);
             for (output, mean) in block.outputs.iter_mut().zip(means) {
                 output[index] = mean as f32;
             }
