@@ -42,19 +42,22 @@ pub(crate) fn dissolve(partition: &Partition, owner: &[u32]) -> Partition {
     joined
 }
 
-/// Joins cells of less than `least` mm² to the neighbour they share the longest border with, the smallest first, until
+/// Joins cells of less than their `least` mm² to the neighbour they share the longest border with, the smallest first, until
 /// none is left that has a neighbour; and how many that were.
-pub(crate) fn merge_slivers(partition: &Partition, least: f64) -> (Partition, usize) {
+pub(crate) fn merge_slivers(
+    partition: &Partition,
+    least: impl Fn(usize) -> f64,
+) -> (Partition, usize) {
     let mut owner: Vec<u32> = (0..partition.len() as u32).collect();
     let mut areas = partition.areas.clone();
     let mut small: Vec<usize> = (0..partition.len())
-        .filter(|cell| areas[*cell] < least)
+        .filter(|cell| areas[*cell] < least(*cell))
         .collect();
     small.sort_by(|a, b| areas[*a].total_cmp(&areas[*b]).then(a.cmp(b)));
     let mut count = 0;
     for cell in small {
         let root = root(&owner, cell);
-        if areas[root] >= least {
+        if areas[root] >= least(root) {
             continue;
         }
         let borders = borders(partition, cell, |other| self::root(&owner, other));

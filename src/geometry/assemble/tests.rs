@@ -150,7 +150,7 @@ fn cells_are_cut_at_a_region_with_a_hole() {
     assert_eq!(inside.rings, blocks[11].rings);
     let cells = assemble(cut, None, 1e-6);
     check(&cells, 73.0);
-    let (merged, count) = merge_slivers(&cells, 0.2);
+    let (merged, count) = merge_slivers(&cells, |_| 0.2);
     check(&merged, 73.0);
     assert!(count > 0 && merged.areas.iter().all(|area| *area >= 0.2));
 }

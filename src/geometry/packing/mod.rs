@@ -24,6 +24,7 @@ mod walls;
 
 pub(crate) use force::Law;
 pub(crate) use guide::Guide;
+pub(crate) use lattice::area_share;
 pub(crate) use plan::{Method, Plan, pack};
 pub(crate) use start::Start;
 pub(crate) use walls::bounds;

@@ -359,7 +359,7 @@ pub(crate) fn stones(field: &Field<'_>, level: &Level) -> Vec<(DVec2, f64)> {
                 continue;
             };
             let across = field.across(sample.point, other.point);
-            let near = 0.35 * sample.scale * field.lattice.step.min_element();
+            let near = 0.35 * sample.scale.min(other.scale) * field.lattice.step.min_element();
             if (other.origin + across).distance_squared(sample.origin) < near * near {
                 let (x, y) = (x + dx, y + dy);
                 let (columns, rows) = (level.columns as i64, level.rows as i64);

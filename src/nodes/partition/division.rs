@@ -221,7 +221,7 @@ pub(super) fn join_slivers(partition: Partition, share: f64) -> (Partition, usiz
         return (partition, 0);
     }
     let mean = partition.areas.iter().sum::<f64>() / partition.len() as f64;
-    merge_slivers(&partition, share * mean)
+    merge_slivers(&partition, |_| share * mean)
 }
 
 /// Gives cells the values of the pieces with the same ids.
