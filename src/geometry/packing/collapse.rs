@@ -126,11 +126,12 @@ impl Net {
     /// Edges between different points, each once, with their lengths.
     fn short_edges(&self, short: &[f64]) -> Vec<(f64, Corner, Corner)> {
         let mut edges = vec![];
+        let most = short.iter().copied().fold(0.0, f64::max);
         for ring in self.rings.iter().flatten() {
             for (index, from) in ring.iter().enumerate() {
                 let to = ring[(index + 1) % ring.len()];
                 let length = self.place(*from).distance(self.place(to));
-                if length < self.short(short, *from, to) {
+                if length < most && length < self.short(short, *from, to) {
                     let (a, b) = if from.point < to.point {
                         (*from, to)
                     } else {

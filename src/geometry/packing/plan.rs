@@ -11,6 +11,7 @@ use super::relax::Relaxation;
 use super::settle::Dynamics;
 use super::start::{Ground, Start};
 use super::walls::Walls;
+use crate::geometry::polygon::doubled_area;
 use crate::value::{Partition, Region};
 use glam::DVec2;
 
@@ -55,6 +56,9 @@ pub(crate) struct Plan<'a> {
 /// Rounds of mending that leave no fewer faults than there were.
 const MENDED: usize = 3;
 
+/// How much of a region may be left out.
+const COVERED: f64 = 1e-9;
+
 /// Rounds of filling what no stone reached.
 const REACHED: usize = 4;
 
@@ -91,15 +95,7 @@ pub(crate) fn pack<E>(
         guide: plan.guide,
     };
     let mut packed: Vec<Stone> = match plan.method {
-        Method::Particles { law, start, steps } => plan.particles(
-            &ground,
-            &bed,
-            Force::new(plan.corners, law),
-            start,
-            steps,
-            random,
-            go_on,
-        )?,
+        Method::Particles { .. } => plan.particles(&ground, &bed, random, go_on)?,
         Method::PositionField => plan.lattice_points(&ground, &bed, random, go_on)?,
     };
     let relaxation = plan.relaxation(&bed);
@@ -114,16 +110,23 @@ pub(crate) fn pack<E>(
         go_on(0.8)?;
         partition = cells(&bed, &packed);
     }
-    let mut stones = packed.clone();
     let (mut fewest, mut vain) = (usize::MAX, 0);
-    let mut next = partition.clone();
+    let (mut next, mut stones) = (None, packed.clone());
     while plan.mends && vain < MENDED {
         let before = stones.clone();
-        let changes = mend(&ground, &next, &mut stones, random);
+        let found = next.as_ref().unwrap_or(&partition);
+        // Cells that do not cover the region are worse than any that do.
+        let uncovered = if is_covered(plan.region, found) {
+            0
+        } else {
+            found.len()
+        };
+        let changes = uncovered + mend(&ground, found, &mut stones, random);
         vain += 1;
         if changes < fewest {
             (fewest, vain) = (changes, 0);
-            (partition, packed) = (next, before);
+            partition = next.take().unwrap_or(partition);
+            packed = before;
         }
         if changes == 0 {
             break;
@@ -132,10 +135,17 @@ pub(crate) fn pack<E>(
         if plan.corners != 5 {
             relaxation.relax(&mut stones, &mut |_| go_on(0.8))?;
         }
-        next = cells(&bed, &stones);
+        next = Some(cells(&bed, &stones));
     }
     plan.describe(&mut partition, &packed);
     Ok(partition)
+}
+
+/// Whether cells cover a region, and once.
+fn is_covered(region: &Region, partition: &Partition) -> bool {
+    let whole: f64 = 0.5 * region.rings().map(doubled_area).sum::<f64>();
+    let covered: f64 = partition.areas.iter().sum();
+    (covered - whole).abs() < COVERED * whole
 }
 
 impl Plan<'_> {
@@ -144,12 +154,12 @@ impl Plan<'_> {
         &self,
         ground: &Ground<'_>,
         bed: &Bed<'_>,
-        force: Force,
-        start: Start,
-        steps: usize,
         random: &mut dyn FnMut() -> f64,
         go_on: &mut dyn FnMut(f64) -> Result<(), E>,
     ) -> Result<Vec<Stone>, E> {
+        let Method::Particles { law, start, steps } = self.method else {
+            return Ok(vec![]);
+        };
         let border = match self.period {
             None => ground.border(random),
             Some(_) => vec![],
@@ -168,7 +178,7 @@ impl Plan<'_> {
         };
         let mut stones = [border, inside].concat();
         let dynamics = Dynamics {
-            force,
+            force: Force::new(self.corners, law),
             stone: self.stone,
             guide: self.guide,
             symmetry: self.symmetry,

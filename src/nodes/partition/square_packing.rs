@@ -221,11 +221,8 @@ fn unused(inputs: &Inputs<'_>, method: Method) -> Result<(), Failure> {
 
 /// The size factor, if it is one for all places.
 fn constant(inputs: &Inputs<'_>) -> Option<f64> {
-    let scale = match inputs.get("scale") {
-        Some(Value::Number(scale)) => *scale,
-        Some(Value::Whole(scale)) => *scale as f64,
-        _ => return None,
-    };
+    let field = inputs.field("scale");
+    let scale = f64::from(*field.as_constant()?.first()?);
     Some(scale.clamp(LEAST, LARGEST))
 }
 
