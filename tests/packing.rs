@@ -1,6 +1,8 @@
 //! Packings: order, gaps and outlines of real plazas, both methods, and what a recipe can ask for.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+#[path = "packing/faults.rs"]
+mod faults;
 #[path = "support/node.rs"]
 mod node;
 
@@ -67,8 +69,11 @@ fn measured(partition: &Arc<Partition>, region: &Value) -> BTreeMap<String, f64>
     };
     let mut lines = table.text.lines();
     let (names, numbers) = (lines.next().unwrap(), lines.next().unwrap());
-    let numbers = numbers.split(',').map(|number| number.parse().unwrap());
-    names.split(',').map(str::to_owned).zip(numbers).collect()
+    let pairs = names.split(',').zip(numbers.split(','));
+    let there = pairs.filter(|(_, number)| !number.is_empty());
+    there
+        .map(|(name, number)| (name.to_owned(), number.parse().unwrap()))
+        .collect()
 }
 
 fn region_area(region: &Value) -> f64 {

@@ -51,20 +51,20 @@ pub(crate) fn dissolve<E>(
     Ok(joined)
 }
 
-/// Joins cells of less than `least` mm² to the neighbour they share the longest border with, the smallest first, until
+/// Joins cells of less than their `least` mm² to the neighbour they share the longest border with, the smallest first, until
 /// none is left that has a neighbour; and how many that were. `go_on` is asked now and then.
 ///
 /// # Errors
 /// What `go_on` says.
 pub(crate) fn merge_slivers<E>(
     partition: &Partition,
-    least: f64,
+    least: impl Fn(usize) -> f64,
     go_on: &mut dyn FnMut() -> Result<(), E>,
 ) -> Result<(Partition, usize), E> {
     let mut owner: Vec<u32> = (0..partition.len() as u32).collect();
     let mut areas = partition.areas.clone();
     let mut small: Vec<usize> = (0..partition.len())
-        .filter(|cell| areas[*cell] < least)
+        .filter(|cell| areas[*cell] < least(*cell))
         .collect();
     small.sort_by(|a, b| areas[*a].total_cmp(&areas[*b]).then(a.cmp(b)));
     let mut count = 0;
@@ -73,7 +73,7 @@ pub(crate) fn merge_slivers<E>(
             go_on()?;
         }
         let root = root(&owner, cell);
-        if areas[root] >= least {
+        if areas[root] >= least(root) {
             continue;
         }
         if let Some(other) = longest_border(partition, cell, root, &owner) {

@@ -22,7 +22,7 @@ fn dissolve(cells: &Partition, owner: &[u32]) -> Partition {
 }
 
 fn merge_slivers(cells: &Partition, least: f64) -> (Partition, usize) {
-    let Ok(merged) = super::merge_slivers(cells, least, &mut go_on);
+    let Ok(merged) = super::merge_slivers(cells, |_| least, &mut go_on);
     merged
 }
 
@@ -258,7 +258,7 @@ fn a_cancelled_run_ends_before_it_takes_long() {
     let work = |go_on: &mut dyn FnMut() -> Result<(), ()>| -> Result<usize, ()> {
         let pieces = super::clip(squares.clone(), &slanting, go_on)?;
         let cells = super::assemble(pieces, None, 1e-6, go_on)?;
-        let (cells, _) = super::merge_slivers(&cells, 0.4, go_on)?;
+        let (cells, _) = super::merge_slivers(&cells, |_| 0.4, go_on)?;
         Ok(cells.len())
     };
     let mut asked = 0;

@@ -3,6 +3,7 @@
 use super::Stone;
 use super::collapse::{Collapse, collapse};
 use super::dual::{OUTSIDE, Site, mosaic};
+use super::guide::Guide;
 use super::walls::Walls;
 use crate::geometry::assemble::{Piece, Ring, assemble, clip, merge_slivers};
 use crate::geometry::polygon::{Edges, Lattice, Operation, doubled_area};
@@ -19,6 +20,24 @@ const SLIVER: f64 = 0.25;
 /// Corners nearer than this share of a stone become one where stones have four corners, and where they have more.
 const SHORT: [f64; 2] = [0.36, 0.12];
 
+/// Sizes that differ by less than this factor are alike.
+const UNLIKE: f64 = 1.5;
+
+/// Most parts of a side.
+const MOST_PARTS: f64 = 32.0;
+
+/// The corners of a square, and the middles of its sides.
+const AROUND: [(f64, f64); 8] = [
+    (1.0, 0.0),
+    (1.0, 1.0),
+    (0.0, 1.0),
+    (-1.0, 1.0),
+    (-1.0, 0.0),
+    (-1.0, -1.0),
+    (0.0, -1.0),
+    (1.0, -1.0),
+];
+
 /// How much of a region may be left out.
 const LEFT_OUT: f64 = 1e-12;
 
@@ -33,9 +52,11 @@ pub(crate) struct Bed<'a> {
     /// Length and width of a stone of size 1, in mm.
     pub(crate) stone: DVec2,
     pub(crate) corners: u32,
+    pub(crate) guide: &'a Guide,
 }
 
-/// The cells of stones; ids are the numbers of the stones. `go_on` is asked now and then.
+/// The cells of stones; ids are the numbers of the stones, and of what no stone reached higher ones. `go_on` is asked now
+/// and then.
 ///
 /// # Errors
 /// What `go_on` says.
@@ -45,29 +66,29 @@ pub(crate) fn cells<E>(
     go_on: &mut dyn FnMut() -> Result<(), E>,
 ) -> Result<Partition, E> {
     let tolerance = 1e-9 * bed.bounds[1].max_element();
-    let partition = bed.covered(bed.pieces(stones, go_on)?, tolerance, go_on)?;
-    let mean = stones
-        .iter()
-        .map(|stone| stone.scale * stone.scale)
-        .sum::<f64>()
-        / stones.len() as f64;
-    let least = SLIVER * mean * bed.stone.x * bed.stone.y;
-    let (partition, _) = merge_slivers(&partition, least, go_on)?;
+    let partition = bed.covered(stones, tolerance, go_on)?;
+    let least = SLIVER * bed.stone.x * bed.stone.y;
+    let sizes = bed.sizes(&partition, stones);
+    let (partition, _) =
+        merge_slivers(&partition, |cell| least * sizes[cell] * sizes[cell], go_on)?;
+    let short = SHORT[usize::from(bed.corners != 4)] * bed.stone.min_element();
+    let sizes = bed.sizes(&partition, stones);
     let limits = Collapse {
-        short: SHORT[usize::from(bed.corners != 4)] * bed.stone.min_element() * mean.sqrt(),
+        short: sizes.into_iter().map(|size| short * size).collect(),
         tolerance,
     };
     collapse(&partition, &limits, go_on)
 }
 
 impl Bed<'_> {
-    /// The partition of pieces, cut off at the border, and of what they leave free.
+    /// The partition of the stones' pieces, cut off at the border, and of what they leave free.
     fn covered<E>(
         &self,
-        pieces: Vec<Piece>,
+        stones: &[Stone],
         tolerance: f64,
         go_on: &mut dyn FnMut() -> Result<(), E>,
     ) -> Result<Partition, E> {
+        let pieces = self.pieces(stones, go_on)?;
         if self.period.is_some() {
             return assemble(pieces, self.period, tolerance, go_on);
         }
@@ -78,11 +99,25 @@ impl Bed<'_> {
         if gaps.is_empty() {
             return Ok(partition);
         }
-        let ids = pieces.iter().map(|piece| piece.id);
-        let highest = ids.max().unwrap_or_default();
-        let numbered = gaps.into_iter().zip(highest + 1..);
+        let numbered = gaps.into_iter().zip(stones.len() as u32..);
         pieces.extend(numbered.map(|(piece, id)| Piece { id, ..piece }));
         assemble(pieces, None, tolerance, go_on)
+    }
+
+    /// The usual size factor of stones where each cell is: that of the place times the random ones' quadratic mean.
+    fn sizes(&self, partition: &Partition, stones: &[Stone]) -> Vec<f64> {
+        let random = |stone: &Stone| stone.scale / self.guide.scale(stone.point);
+        let squares = stones.iter().map(|stone| random(stone) * random(stone));
+        let mean = squares.sum::<f64>() / stones.len().max(1) as f64;
+        let usual = if stones.is_empty() { 1.0 } else { mean.sqrt() };
+        let size = |cell: usize| {
+            let stone = stones.get(partition.ids[cell] as usize);
+            usual
+                * self
+                    .guide
+                    .scale(stone.map_or(partition.centres[cell], |stone| stone.point))
+        };
+        (0..partition.len()).map(size).collect()
     }
 
     /// What of the region lies in no cell: slips of land behind corners that turn into it.
@@ -136,9 +171,14 @@ impl Bed<'_> {
         go_on: &mut dyn FnMut() -> Result<(), E>,
     ) -> Result<Vec<Piece>, E> {
         let all = self.with_images(stones);
-        let pattern = pattern(self.stone, self.corners);
+        let usual = pattern(self.stone, self.corners, 1);
+        let is_even = self.guide.largest() < UNLIKE * self.guide.least();
         let of_stone = |(owner, stone): (usize, &Stone)| {
-            let places = pattern
+            let parts = if is_even { 1 } else { self.parts(stone) };
+            let finer = (parts > 1).then(|| pattern(self.stone, self.corners, parts));
+            let places = finer
+                .as_ref()
+                .unwrap_or(&usual)
                 .iter()
                 .map(|at| stone.point + stone.frame.rotate(*at * stone.scale));
             let sites = places.map(|point| Site {
@@ -173,6 +213,21 @@ impl Bed<'_> {
             centre: None,
         };
         Ok(pieces.map(piece).collect())
+    }
+
+    /// How many of the stones beside a stone its side is as long as, where they are smaller.
+    fn parts(&self, stone: &Stone) -> u32 {
+        let own = self.guide.scale(stone.point);
+        let (half, wide) = (0.5 * stone.scale * self.stone, self.stone.y);
+        let places = AROUND.map(|at| {
+            let beyond = DVec2::from(at) * (half + wide);
+            self.guide.scale(stone.point + stone.frame.rotate(beyond))
+        });
+        let least = places.into_iter().fold(own, f64::min);
+        if own < UNLIKE * least {
+            return 1;
+        }
+        (own / least).round().min(MOST_PARTS) as u32
     }
 
     /// The stones, and behind them their images around the period.
@@ -250,28 +305,40 @@ impl Bed<'_> {
     }
 }
 
-/// Where the sites of a stone of size 1 are, from its middle.
-fn pattern(stone: DVec2, corners: u32) -> Vec<DVec2> {
+/// Where the sites of a stone of size 1 are, from its middle: near its sides, each of which is divided into `parts`, as
+/// near as those of stones as long as a part.
+fn pattern(stone: DVec2, corners: u32, parts: u32) -> Vec<DVec2> {
     if corners == 5 {
         return vec![DVec2::ZERO];
     }
+    let share = 1.0 / f64::from(parts);
     if corners != 4 {
         let turn = std::f64::consts::TAU / f64::from(corners);
+        let depth = 0.5 - 0.25 * share;
+        let length = 2.0 * depth * libm::tan(0.5 * turn);
         let site = |index: u32| {
-            let (sine, cosine) = libm::sincos(turn * f64::from(index));
-            0.25 * DVec2::new(cosine, sine) * stone
+            let (sine, cosine) = libm::sincos(turn * f64::from(index / parts));
+            let normal = DVec2::new(cosine, sine);
+            let aside = length * ((f64::from(index % parts) + 0.5) * share - 0.5);
+            (depth * normal + aside * normal.perp()) * stone
         };
-        return (0..corners).map(site).collect();
+        return (0..corners * parts).map(site).collect();
     }
     let short = stone.min_element();
     let count = (2.0 * stone / short)
         .round()
-        .clamp(DVec2::splat(2.0), DVec2::splat(16.0));
+        .clamp(DVec2::splat(2.0), DVec2::splat(16.0))
+        * f64::from(parts);
     let step = stone / count;
     let (columns, rows) = (count.x as usize, count.y as usize);
+    let is_outer = |index: &usize| {
+        let (column, row) = (index % columns, index / columns);
+        column == 0 || row == 0 || column + 1 == columns || row + 1 == rows
+    };
     let site = |index: usize| {
         let at = DVec2::new((index % columns) as f64, (index / columns) as f64);
         (at + 0.5 - 0.5 * count) * step
     };
-    (0..columns * rows).map(site).collect()
+    let sites = (0..columns * rows).filter(|index| parts == 1 || is_outer(index));
+    sites.map(site).collect()
 }

@@ -8,8 +8,8 @@ use glam::DVec2;
 
 /// What counts as short.
 pub(crate) struct Collapse {
-    /// Edges shorter than this become corners, in mm.
-    pub(crate) short: f64,
+    /// Of each cell: edges shorter than this become corners, in mm; the least of the cells that meet there counts.
+    pub(crate) short: Vec<f64>,
     /// How near corners are that count as one, in mm.
     pub(crate) tolerance: f64,
 }
@@ -58,13 +58,13 @@ pub(crate) fn collapse<E>(
 ) -> Result<Partition, E> {
     let mut net = Net::new(partition, limits, go_on)?;
     go_on()?;
-    let mut edges = net.short_edges(limits.short);
+    let mut edges = net.short_edges(&limits.short);
     edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
     for (number, (_, from, to)) in edges.into_iter().enumerate() {
         if number.is_multiple_of(AT_ONCE) {
             go_on()?;
         }
-        net.join(from, to, limits.short);
+        net.join(from, to, net.short(&limits.short, from, to));
     }
     let pieces = net.rings.iter().enumerate().map(|(cell, rings)| {
         let ring = |ring: &Vec<Corner>| {
@@ -146,14 +146,25 @@ impl Net {
         self.points[corner.point as usize] + DVec2::new(x, y) * self.period
     }
 
+    /// What is short between two corners.
+    fn short(&self, short: &[f64], from: Corner, to: Corner) -> f64 {
+        let cells = [from, to].map(|corner| self.cells[corner.point as usize].iter());
+        let short = cells
+            .into_iter()
+            .flatten()
+            .map(|cell| short[*cell as usize]);
+        short.fold(f64::INFINITY, f64::min)
+    }
+
     /// Edges between different points, each once, with their lengths.
-    fn short_edges(&self, short: f64) -> Vec<(f64, Corner, Corner)> {
+    fn short_edges(&self, short: &[f64]) -> Vec<(f64, Corner, Corner)> {
         let mut edges = vec![];
+        let most = short.iter().copied().fold(0.0, f64::max);
         for ring in self.rings.iter().flatten() {
             for (index, from) in ring.iter().enumerate() {
                 let to = ring[(index + 1) % ring.len()];
                 let length = self.place(*from).distance(self.place(to));
-                if length < short {
+                if length < most && length < self.short(short, *from, to) {
                     let (a, b) = if from.point < to.point {
                         (*from, to)
                     } else {

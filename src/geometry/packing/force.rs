@@ -46,13 +46,15 @@ pub(crate) fn cubic(w: f64) -> f64 {
 }
 
 impl Force {
-    /// The force of squares (4 corners), pentagons (5) or hexagons (6); the middle of a side lies on the x axis.
+    /// The force of squares (4 corners), pentagons (5) or hexagons (6); the middle of a side lies on the x axis, of
+    /// pentagons halfway between the axes, as in a Cairo tiling along them.
     pub(crate) fn new(corners: u32, law: Law) -> Force {
         let count = (corners as usize).clamp(3, MOST);
         let part = std::f64::consts::PI / count as f64;
+        let first = part + Force::first_side(corners);
         let radius = 0.5 / libm::cos(part);
         let corner = |index: usize| {
-            let (sine, cosine) = libm::sincos(part * (2 * index + 1) as f64);
+            let (sine, cosine) = libm::sincos(first + part * (2 * index) as f64);
             radius * DVec2::new(cosine, sine)
         };
         let mut force = Force {
@@ -63,6 +65,15 @@ impl Force {
         };
         (0..count).for_each(|index| force.corners[index] = corner(index));
         force
+    }
+
+    /// The angle from the x axis to the middle of a side.
+    fn first_side(corners: u32) -> f64 {
+        if corners == 5 {
+            std::f64::consts::FRAC_PI_4
+        } else {
+            0.0
+        }
     }
 
     /// The sum ψ of the cubics at a point in the particle's frame, in stones.
@@ -209,6 +220,7 @@ mod tests {
             let force = Force::new(corners, Law::Radial);
             for side in 0..corners {
                 let turn = std::f64::consts::TAU * f64::from(side) / f64::from(corners);
+                let turn = turn + Force::first_side(corners);
                 let found = force.strength(DVec2::from_angle(turn));
                 assert!(
                     found.abs() < 1e-14,

@@ -87,6 +87,20 @@ impl Guide {
         }
     }
 
+    /// Size factor at a point.
+    pub(crate) fn scale(&self, point: DVec2) -> f64 {
+        self.turned(point).1
+    }
+
+    /// The mean over all places of how many stones take the area of one of size 1.
+    pub(crate) fn density(&self) -> f64 {
+        let stones = self
+            .samples
+            .iter()
+            .map(|sample| 1.0 / (sample.1 * sample.1));
+        stones.sum::<f64>() / self.samples.len() as f64
+    }
+
     /// The smallest size factor anywhere.
     pub(crate) fn least(&self) -> f64 {
         self.samples

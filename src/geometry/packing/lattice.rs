@@ -2,6 +2,24 @@
 
 use glam::DVec2;
 
+/// Distance of the stones of a Cairo tiling from the corners of its squares, over the squares' side, and the side over
+/// the distance of neighbouring stones.
+pub(crate) const CAIRO: f64 = 0.183_012_701_892_219_3;
+pub(crate) const CAIRO_SIDE: f64 = 1.931_851_652_578_136_6;
+
+/// How the four stones around a corner are turned.
+pub(crate) const CAIRO_TURNS: [(f64, f64); 4] = [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
+
+/// The area of a stone with 4, 5 or 6 corners, over that of the rectangle of its length and width: of hexagons, and of the
+/// pentagons of a Cairo tiling, these are distances to their neighbours.
+pub(crate) fn area_share(corners: u32) -> f64 {
+    match corners {
+        5 => 0.25 * CAIRO_SIDE * CAIRO_SIDE,
+        6 => 0.75_f64.sqrt(),
+        _ => 1.0,
+    }
+}
+
 /// Rows of points: `step.x` apart within a row, rows `step.y` apart, each row moved by `shift` of a step against the
 /// one before.
 #[derive(Clone, Copy, Debug, PartialEq)]

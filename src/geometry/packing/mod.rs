@@ -4,6 +4,7 @@
 //! left, as in the paper. A position field (Jakob and others 2015) gives every place its nearest point of a lattice that
 //! follows the direction, and stones stand where many places agree; then they are evened out, and mended.
 
+pub(crate) mod attributes;
 mod cells;
 mod collapse;
 pub(crate) mod direction;
@@ -24,6 +25,7 @@ mod walls;
 
 pub(crate) use force::Law;
 pub(crate) use guide::Guide;
+pub(crate) use lattice::area_share;
 pub(crate) use plan::{Method, Plan, pack};
 pub(crate) use start::Start;
 pub(crate) use walls::bounds;

@@ -17,34 +17,43 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Lists all sources for which `is_near(particle, source, offset)` holds, where no offset is longer than `reach`.
+    /// Lists all sources for which `is_near(particle, source, offset)` holds, where no offset is longer than half of the
+    /// reaches of both.
     pub(crate) fn new(
         points: &[DVec2],
         period: Option<DVec2>,
-        reach: f64,
+        reaches: &[f64],
         is_near: impl Fn(usize, usize, DVec2) -> bool + Sync,
     ) -> Neighbours {
-        let sources = sources(points, period, reach);
+        let farthest = reaches.iter().copied().fold(0.0, f64::max);
+        let sources = sources(points, period, farthest);
         let places: Vec<DVec2> = sources
             .iter()
             .map(|(index, by)| points[*index as usize] + *by)
             .collect();
-        let tiles = Tiles::new(&places, reach);
+        let layers = layers(&sources, &places, reaches);
         let chunks = points.par_chunks(CHUNK).enumerate();
         let chunks = chunks.map(|(chunk, points)| {
             let (mut ends, mut list) = (vec![], vec![]);
             for (index, point) in points.iter().enumerate() {
                 let index = chunk * CHUNK + index;
-                tiles.around(*point, |source| {
-                    let offset = places[source as usize] - *point;
-                    let other = sources[source as usize].0 as usize;
-                    if source as usize != index
-                        && offset.length_squared() < reach * reach
-                        && is_near(index, other, offset)
-                    {
-                        list.push(source);
-                    }
-                });
+                for layer in &layers {
+                    let reach = 0.5 * (reaches[index] + layer.reach);
+                    layer.tiles.within(*point, reach, |item| {
+                        let source = layer
+                            .items
+                            .as_ref()
+                            .map_or(item, |items| items[item as usize]);
+                        let offset = places[source as usize] - *point;
+                        let other = sources[source as usize].0 as usize;
+                        if source as usize != index
+                            && offset.length_squared() < reach * reach
+                            && is_near(index, other, offset)
+                        {
+                            list.push(source);
+                        }
+                    });
+                }
                 ends.push(list.len() as u32);
             }
             (ends, list)
@@ -62,6 +71,45 @@ impl Neighbours {
         let from = if within == 0 { 0 } else { ends[within - 1] };
         &list[from as usize..ends[within] as usize]
     }
+}
+
+/// Sources of which none reaches twice as far as another.
+struct Layer {
+    /// How far they reach.
+    reach: f64,
+    /// Which sources; all if there is but one layer.
+    items: Option<Vec<u32>>,
+    tiles: Tiles,
+}
+
+/// Sources by how far they reach: each layer has tiles of its own size.
+fn layers(sources: &[(u32, DVec2)], places: &[DVec2], reaches: &[f64]) -> Vec<Layer> {
+    let farthest = reaches.iter().copied().fold(0.0, f64::max);
+    let nearest = reaches.iter().copied().fold(farthest, f64::min);
+    if nearest <= 0.0 || farthest < 2.0 * nearest {
+        return vec![Layer {
+            reach: farthest,
+            items: None,
+            tiles: Tiles::new(places, farthest),
+        }];
+    }
+    let mut layers = vec![];
+    let mut reach = farthest;
+    while reach >= nearest {
+        let is_here = |index: &u32| {
+            let own = reaches[sources[*index as usize].0 as usize];
+            own <= reach && own > 0.5 * reach
+        };
+        let items: Vec<u32> = (0..sources.len() as u32).filter(is_here).collect();
+        let own: Vec<DVec2> = items.iter().map(|item| places[*item as usize]).collect();
+        layers.push(Layer {
+            reach,
+            tiles: Tiles::new(&own, reach),
+            items: Some(items),
+        });
+        reach *= 0.5;
+    }
+    layers
 }
 
 /// The points, and their images as far as `reach` beyond the period.
@@ -148,11 +196,12 @@ impl Tiles {
         ]
     }
 
-    /// Calls `take` with every point that is no farther than a tile's side, and some that are.
-    pub(crate) fn around(&self, point: DVec2, mut take: impl FnMut(u32)) {
-        let [x, y] = self.tile_of(point);
-        let columns = x.saturating_sub(1)..=(x + 1).min(self.columns - 1);
-        for row in y.saturating_sub(1)..=(y + 1).min(self.rows - 1) {
+    /// Calls `take` with every point that is no farther than `reach` mm, and some that are.
+    pub(crate) fn within(&self, point: DVec2, reach: f64, mut take: impl FnMut(u32)) {
+        let ([left, bottom], [right, top]) =
+            (self.tile_of(point - reach), self.tile_of(point + reach));
+        let columns = left..=right;
+        for row in bottom..=top {
             let first = row * self.columns;
             let from = self.starts[first + columns.start()] as usize;
             let to = self.starts[first + columns.end() + 1] as usize;

@@ -4,13 +4,14 @@ use super::Stone;
 use super::cells::{Bed, cells};
 use super::force::{Force, Law};
 use super::guide::Guide;
-use super::lattice::Lattice;
-use super::mend::mend;
+use super::lattice::{CAIRO, CAIRO_SIDE, CAIRO_TURNS, Lattice, area_share};
+use super::mend::{mend, reach};
 use super::position::{Field, stones};
 use super::relax::Relaxation;
 use super::settle::Dynamics;
 use super::start::{Ground, Start};
 use super::walls::Walls;
+use crate::geometry::polygon::doubled_area;
 use crate::value::{Partition, Region};
 use glam::DVec2;
 
@@ -52,15 +53,16 @@ pub(crate) struct Plan<'a> {
     pub(crate) symmetry: u32,
 }
 
-/// Rounds of mending.
+/// Rounds of mending that leave no fewer faults than there were.
 const MENDED: usize = 3;
 
-/// Distance of the stones of a Cairo tiling from the corners of its squares, over the squares' side, and the side over
-/// the distance of neighbouring stones.
-const CAIRO: f64 = 0.183_012_701_892_219_3;
-const CAIRO_SIDE: f64 = 1.931_851_652_578_136_6;
+/// How much of a region may be left out.
+const COVERED: f64 = 1e-9;
 
-/// The cells of packed stones, with the attributes `size` (mm), `aspect` and `corners`. `random` gives numbers from 0 to
+/// Rounds of filling what no stone reached.
+const REACHED: usize = 4;
+
+/// The cells of packed stones, with the attributes `size` (mm), `aspect`, `corners` and `bond`. `random` gives numbers from 0 to
 /// less than 1; `go_on` hears the share that is done.
 ///
 /// # Errors
@@ -81,6 +83,7 @@ pub(crate) fn pack<E>(
         stone: plan.stone,
         spread: plan.spread,
         least,
+        area: plan.stone.x * plan.stone.y * area_share(plan.corners),
     };
     let bed = Bed {
         region: plan.region,
@@ -89,16 +92,10 @@ pub(crate) fn pack<E>(
         period: plan.period,
         stone: plan.stone,
         corners: plan.corners,
+        guide: plan.guide,
     };
-    let mut packed = match plan.method {
-        Method::Particles { law, start, steps } => plan.particles(
-            &ground,
-            Force::new(plan.corners, law),
-            start,
-            steps,
-            random,
-            go_on,
-        )?,
+    let mut packed: Vec<Stone> = match plan.method {
+        Method::Particles { .. } => plan.particles(&ground, &bed, random, go_on)?,
         Method::PositionField => plan.lattice_points(&ground, &bed, random, go_on)?,
     };
     let relaxation = plan.relaxation(&bed);
@@ -106,16 +103,49 @@ pub(crate) fn pack<E>(
         relaxation.relax(&mut packed, &mut |share| go_on(0.5 + 0.2 * share))?;
     }
     let mut partition = cells(&bed, &packed, &mut || go_on(0.75))?;
-    for _ in 0..MENDED {
-        if !plan.mends || !mend(&ground, &partition, &mut packed, random) {
+    for _ in 0..REACHED {
+        if plan.mends || reach(&ground, &partition, &mut packed, random) == 0 {
             break;
         }
         go_on(0.8)?;
-        relaxation.relax(&mut packed, &mut |_| go_on(0.8))?;
-        partition = cells(&bed, &packed, &mut || go_on(0.9))?;
+        partition = cells(&bed, &packed, &mut || go_on(0.8))?;
+    }
+    let (mut fewest, mut vain) = (usize::MAX, 0);
+    let (mut next, mut stones) = (None, packed.clone());
+    while plan.mends && vain < MENDED {
+        let before = stones.clone();
+        let found = next.as_ref().unwrap_or(&partition);
+        // Cells that do not cover the region are worse than any that do.
+        let uncovered = if is_covered(plan.region, found) {
+            0
+        } else {
+            found.len()
+        };
+        let changes = uncovered + mend(&ground, found, &mut stones, random);
+        vain += 1;
+        if changes < fewest {
+            (fewest, vain) = (changes, 0);
+            partition = next.take().unwrap_or(partition);
+            packed = before;
+        }
+        if changes == 0 {
+            break;
+        }
+        go_on(0.8)?;
+        if plan.corners != 5 {
+            relaxation.relax(&mut stones, &mut |_| go_on(0.8))?;
+        }
+        next = Some(cells(&bed, &stones, &mut || go_on(0.9))?);
     }
     plan.describe(&mut partition, &packed);
     Ok(partition)
+}
+
+/// Whether cells cover a region, and once.
+fn is_covered(region: &Region, partition: &Partition) -> bool {
+    let whole: f64 = 0.5 * region.rings().map(doubled_area).sum::<f64>();
+    let covered: f64 = partition.areas.iter().sum();
+    (covered - whole).abs() < COVERED * whole
 }
 
 impl Plan<'_> {
@@ -123,20 +153,32 @@ impl Plan<'_> {
     fn particles<E>(
         &self,
         ground: &Ground<'_>,
-        force: Force,
-        start: Start,
-        steps: usize,
+        bed: &Bed<'_>,
         random: &mut dyn FnMut() -> f64,
         go_on: &mut dyn FnMut(f64) -> Result<(), E>,
     ) -> Result<Vec<Stone>, E> {
+        let Method::Particles { law, start, steps } = self.method else {
+            return Ok(vec![]);
+        };
         let border = match self.period {
             None => ground.border(random),
             Some(_) => vec![],
         };
-        let inside = ground.inside(&border, start, random);
+        let is_square = self.corners == 4 && self.stone.x == self.stone.y;
+        let inside = if start == Start::Lattice && !is_square {
+            let places = self.lattice_places(ground, bed, &mut |share| go_on(0.1 * share))?;
+            let turns = if self.corners == 5 {
+                &CAIRO_TURNS[..]
+            } else {
+                &[(1.0, 0.0)]
+            };
+            ground.beside(&border, &places, turns, random, &mut || go_on(0.1))?
+        } else {
+            ground.inside(&border, start, random, &mut || go_on(0.0))?
+        };
         let mut stones = [border, inside].concat();
         let dynamics = Dynamics {
-            force,
+            force: Force::new(self.corners, law),
             stone: self.stone,
             guide: self.guide,
             symmetry: self.symmetry,
@@ -150,14 +192,13 @@ impl Plan<'_> {
         Ok(stones)
     }
 
-    /// Stones at the points of a lattice that follows the guide.
-    fn lattice_points<E>(
+    /// The points of a lattice that follows the guide. `go_on` hears the share that is done.
+    fn lattice_places<E>(
         &self,
         ground: &Ground<'_>,
         bed: &Bed<'_>,
-        random: &mut dyn FnMut() -> f64,
         go_on: &mut dyn FnMut(f64) -> Result<(), E>,
-    ) -> Result<Vec<Stone>, E> {
+    ) -> Result<Vec<DVec2>, E> {
         let field = Field {
             lattice: self.lattice(),
             guide: self.guide,
@@ -171,7 +212,7 @@ impl Plan<'_> {
         let mut round = 0.0;
         let level = field.solve(&mut || {
             round += 1.0;
-            go_on(0.5 * round / (round + 20.0))
+            go_on(round / (round + 20.0))
         })?;
         let mut points: Vec<DVec2> = stones(&field, &level)
             .into_iter()
@@ -180,6 +221,18 @@ impl Plan<'_> {
         if self.corners == 5 {
             points = self.pentagons(&points);
         }
+        Ok(points)
+    }
+
+    /// Stones at the points of a lattice that follows the guide.
+    fn lattice_points<E>(
+        &self,
+        ground: &Ground<'_>,
+        bed: &Bed<'_>,
+        random: &mut dyn FnMut() -> f64,
+        go_on: &mut dyn FnMut(f64) -> Result<(), E>,
+    ) -> Result<Vec<Stone>, E> {
+        let mut points = self.lattice_places(ground, bed, &mut |share| go_on(0.5 * share))?;
         let is_free = |point: &DVec2| {
             let width = self.stone.min_element() * self.guide.at(*point).scale;
             let nearest = ground.walls.nearest(*point);
@@ -257,16 +310,19 @@ impl Plan<'_> {
             .collect();
         partition.frames = axes;
         let width = self.stone.min_element();
-        let size = |id: &u32| {
-            let stone = stones.get(*id as usize);
-            width * stone.map_or(1.0, |stone| stone.scale)
+        let mean = 0.5 * (self.spread[0] + self.spread[1]);
+        let size = |cell: usize| {
+            let stone = stones.get(partition.ids[cell] as usize);
+            let usual = || mean * self.guide.scale(partition.centres[cell]);
+            width * stone.map_or_else(usual, |stone| stone.scale)
         };
-        let sizes = partition.ids.iter().map(size).collect();
+        let sizes = (0..partition.len()).map(size).collect();
         let count = partition.len();
         let mut set =
             |name: &str, numbers: Vec<f64>| partition.attributes.insert(name.to_owned(), numbers);
         set("size", sizes);
         set("aspect", vec![self.stone.x / self.stone.y; count]);
         set("corners", vec![f64::from(self.corners); count]);
+        set("bond", vec![self.bond; count]);
     }
 }

@@ -20,6 +20,9 @@ const MOVED: f64 = 0.7;
 const ALIGNED: f64 = 0.12;
 const BORDER: f64 = 3.0;
 
+/// Stones lie side by side only if none is smaller than this share of their mean.
+const ALIKE: f64 = 0.7;
+
 /// What stones are evened out in.
 pub(crate) struct Relaxation<'a> {
     pub(crate) guide: &'a Guide,
@@ -90,9 +93,9 @@ impl Relaxation<'_> {
 
     fn neighbours(&self, stones: &[Stone]) -> Neighbours {
         let points: Vec<DVec2> = stones.iter().map(|stone| stone.point).collect();
-        let largest = stones.iter().map(|stone| stone.scale).fold(0.0, f64::max);
-        let reach = REACH * largest * self.stone.max_element();
-        Neighbours::new(&points, self.period, reach, |index, other, offset| {
+        let reach = REACH * self.stone.max_element();
+        let reaches: Vec<f64> = stones.iter().map(|stone| reach * stone.scale).collect();
+        Neighbours::new(&points, self.period, &reaches, |index, other, offset| {
             let (one, other) = (&stones[index], &stones[other]);
             let scale = 0.5 * (one.scale + other.scale);
             let within = one.within(offset) / (scale * self.stone);
@@ -137,8 +140,11 @@ impl Relaxation<'_> {
         // The side of the neighbour that the stone lies beyond, if it lies beyond one.
         let side = nearest_turn(DVec2::X, within.normalize_or(DVec2::X), self.sides);
         let (along, aside) = (within.dot(side), side.perp_dot(within));
-        let beside = if self.is_aligned { 0.45 } else { 0.8 };
-        if aside.abs() > beside || along > 1.35 {
+        // Of unlike stones the smaller one says how near they are to touch, and how far their sides face.
+        let smaller = stone.scale.min(other.scale) / scale;
+        let facing = if self.is_aligned { 0.55 } else { 0.2 };
+        let beside = 1.0 - facing * smaller;
+        if aside.abs() > beside || along > 1.0 + 0.35 * smaller {
             return;
         }
         let weight = 1.0 - 0.5 * (aside / beside).abs();
@@ -146,7 +152,7 @@ impl Relaxation<'_> {
         let normal = frame.rotate(side);
         let length = (side * self.stone).length();
         pull.add(normal, off * length, weight);
-        if self.is_aligned {
+        if self.is_aligned && smaller > ALIKE {
             pull.add(normal.perp(), -aside * scale * length, ALIGNED * weight);
         }
     }

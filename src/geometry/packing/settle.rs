@@ -17,6 +17,12 @@ const AT_REST: f64 = 1e-3;
 /// How much farther than the force reaches neighbours are listed, in stones.
 const SKIN: f64 = 0.16;
 
+/// Stones whose mean is more than this many times the smaller one are unlike.
+const UNLIKE: f64 = 1.25;
+
+/// As near as particles that overlap much are taken to be, in stones.
+const LEAST_SIDE: f64 = 0.05;
+
 /// Steps after which directions are read anew.
 const TURNED: usize = 8;
 
@@ -98,10 +104,10 @@ impl Dynamics<'_> {
 
     fn neighbours(&self, stones: &[Stone]) -> Neighbours {
         let points: Vec<DVec2> = stones.iter().map(|stone| stone.point).collect();
-        let largest = stones.iter().map(|stone| stone.scale).fold(0.0, f64::max);
-        let reach = (REACH + SKIN) * largest * self.stone.max_element();
+        let reach = (REACH + SKIN) * self.stone.max_element();
+        let reaches: Vec<f64> = stones.iter().map(|stone| reach * stone.scale).collect();
         let round = self.stone.x == self.stone.y;
-        Neighbours::new(&points, self.period, reach, |index, other, offset| {
+        Neighbours::new(&points, self.period, &reaches, |index, other, offset| {
             let (one, other) = (&stones[index], &stones[other]);
             let scale = 0.5 * (one.scale + other.scale);
             let reach = (REACH + SKIN) * scale;
@@ -120,6 +126,9 @@ impl Dynamics<'_> {
         forces: &mut [DVec2],
     ) {
         let inverse = 1.0 / self.stone;
+        let scales = || stones.iter().map(|stone| stone.scale);
+        let largest = scales().fold(0.0, f64::max);
+        let has_unlike = scales().any(|scale| largest > (2.0 * UNLIKE - 1.0) * scale);
         let on = |index: usize| {
             let stone = &stones[index];
             let mut sum = DVec2::ZERO;
@@ -129,8 +138,12 @@ impl Dynamics<'_> {
                     Some(image) => &images[image],
                     None => &stones[source],
                 };
-                let scale = 0.5 * (stone.scale + other.scale);
-                let within = other.within(stone.point - other.point) * inverse / scale;
+                let mut scale = 0.5 * (stone.scale + other.scale);
+                let mut within = other.within(stone.point - other.point) * inverse / scale;
+                if has_unlike {
+                    let smaller = (UNLIKE * stone.scale.min(other.scale)).min(scale) / scale;
+                    (within, scale) = (beside(within, smaller), smaller * scale);
+                }
                 if within.length_squared() < REACH * REACH {
                     sum += other.frame.rotate(self.force.at(within) * self.stone) * scale;
                 }
@@ -147,6 +160,16 @@ impl Dynamics<'_> {
             }
         });
     }
+}
+
+/// Where a particle is in the frame of one that is much larger or smaller, if the distance between their sides counts in
+/// stones that are `smaller` than the mean of both: with that, only the first row feels a large one.
+fn beside(within: DVec2, smaller: f64) -> DVec2 {
+    let side = within.abs().max_element();
+    if smaller == 1.0 || side == 0.0 {
+        return within;
+    }
+    within * ((1.0 + (side - 1.0) / smaller).max(LEAST_SIDE) / side)
 }
 
 /// Where the particles of neighbouring periods are, which stand behind the particles themselves in `neighbours`.

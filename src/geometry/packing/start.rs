@@ -10,6 +10,9 @@ use glam::DVec2;
 /// Corners of the border that turn by less than this are rounded by a row of stones (cosine of 35 degrees).
 const SHARP: f64 = 0.82;
 
+/// Stones between two questions whether to go on.
+const OFTEN: usize = 1 << 14;
+
 /// How the inside is filled at first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Start {
@@ -30,6 +33,8 @@ pub(crate) struct Ground<'a> {
     pub(crate) spread: [f64; 2],
     /// Smallest size factor anywhere.
     pub(crate) least: f64,
+    /// Area of a stone of size 1 in mm².
+    pub(crate) area: f64,
 }
 
 impl Ground<'_> {
@@ -132,20 +137,28 @@ impl Ground<'_> {
     }
 
     /// Particles inside, none on those that are there already.
-    pub(crate) fn inside(
+    ///
+    /// # Errors
+    /// What `go_on` says.
+    pub(crate) fn inside<E>(
         &self,
         there: &[Stone],
         start: Start,
         random: &mut dyn FnMut() -> f64,
-    ) -> Vec<Stone> {
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Vec<Stone>, E> {
         let [low, high] = self.walls.bounds();
         let mean = 0.5 * (self.spread[0] + self.spread[1]);
-        let step = self.least * mean * self.stone;
+        let size = (self.area / (self.stone.x * self.stone.y)).sqrt();
+        let step = self.least * mean * size * self.stone;
         let count = ((high - low) / step).ceil().max(DVec2::ONE);
         let (columns, rows) = (count.x as usize, count.y as usize);
         let step = (high - low) / count;
         let mut stones = there.to_vec();
         for index in 0..columns * rows {
+            if index % OFTEN == 0 {
+                go_on()?;
+            }
             let moved = DVec2::new(random(), random());
             let (keep, size) = (random(), random());
             let at = match start {
@@ -160,9 +173,36 @@ impl Ground<'_> {
                 stones.push(self.stone_at(at, size));
             }
         }
-        let mut stones = self.apart_from(stones, there.len(), 0.7);
-        stones.drain(..there.len());
-        stones
+        self.apart_from(stones, there.len(), 0.7, go_on)
+    }
+
+    /// Particles at places of a lattice, each moved by up to a quarter of a stone, none on those that are there already.
+    ///
+    /// # Errors
+    /// What `go_on` says.
+    pub(crate) fn beside<E>(
+        &self,
+        there: &[Stone],
+        places: &[DVec2],
+        turns: &[(f64, f64)],
+        random: &mut dyn FnMut() -> f64,
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Vec<Stone>, E> {
+        let moved = |(place, turn): (&DVec2, &(f64, f64))| {
+            let wish = self.guide.at(*place);
+            let off = 0.5 * (DVec2::new(random(), random()) - 0.5) * self.stone * wish.scale;
+            let at = *place + wish.frame.rotate(off);
+            let size = random();
+            let stone = self.stone_at(at, size);
+            let frame = stone.frame.rotate(DVec2::from(*turn));
+            self.walls.contains(at).then_some(Stone { frame, ..stone })
+        };
+        let inside: Vec<Stone> = places
+            .iter()
+            .zip(turns.iter().cycle())
+            .filter_map(moved)
+            .collect();
+        self.apart_from([there, &inside].concat(), there.len(), 0.7, go_on)
     }
 
     /// Leaves out stones that are nearer than `least` stones to one before them.
@@ -171,7 +211,8 @@ impl Ground<'_> {
         let mut is_kept = vec![true; stones.len()];
         for index in 0..stones.len() {
             let one = &stones[index];
-            tiles.around(one.point, |other| {
+            let reach = least * self.stone.min_element() * one.scale;
+            tiles.within(one.point, reach, |other| {
                 let other = other as usize;
                 let near = least * self.stone.min_element() * one.scale.min(stones[other].scale);
                 if other < index && is_kept[other] && stones[other].point.distance(one.point) < near
@@ -187,31 +228,38 @@ impl Ground<'_> {
             .collect()
     }
 
-    /// Leaves out stones behind the first `count` that are nearer than `least` stones to one of these.
-    fn apart_from(&self, stones: Vec<Stone>, count: usize, least: f64) -> Vec<Stone> {
-        let tiles = self.tiles(&stones[..count]);
-        let is_apart = |(index, stone): &(usize, Stone)| {
-            let mut is_apart = *index < count;
+    /// The stones behind the first `count` that are no nearer than `least` stones to one of these.
+    fn apart_from<E>(
+        &self,
+        stones: Vec<Stone>,
+        count: usize,
+        least: f64,
+        go_on: &mut dyn FnMut() -> Result<(), E>,
+    ) -> Result<Vec<Stone>, E> {
+        let there = &stones[..count];
+        let tiles = self.tiles(there);
+        let largest = there.iter().map(|stone| stone.scale).fold(0.0, f64::max);
+        let is_apart = |stone: &Stone| {
             let mut nearest = f64::INFINITY;
-            tiles.around(stone.point, |other| {
+            let reach = 0.5 * least * (stone.scale + largest) * self.stone.max_element();
+            tiles.within(stone.point, reach, |other| {
                 let other = &stones[other as usize];
                 let scale = 0.5 * (stone.scale + other.scale);
                 nearest = nearest
                     .min((other.within(stone.point - other.point) / (scale * self.stone)).length());
             });
-            is_apart |= nearest > least;
-            is_apart
+            nearest > least
         };
-        let kept = stones.iter().copied().enumerate().filter(is_apart);
-        kept.map(|(_, stone)| stone).collect()
+        let mut apart = vec![];
+        for stones in stones[count..].chunks(OFTEN) {
+            go_on()?;
+            apart.extend(stones.iter().copied().filter(is_apart));
+        }
+        Ok(apart)
     }
 
     fn tiles(&self, stones: &[Stone]) -> Tiles {
         let points: Vec<DVec2> = stones.iter().map(|stone| stone.point).collect();
-        let largest = stones
-            .iter()
-            .map(|stone| stone.scale)
-            .fold(self.least, f64::max);
-        Tiles::new(&points, largest * self.stone.max_element())
+        Tiles::new(&points, self.least * self.stone.min_element())
     }
 }

@@ -1,6 +1,8 @@
 //! How good a packing is: order, joints, empty places, overlaps, stones across the outline.
 
+use super::attributes::{aspect, bond, corners, own_axis, symmetry};
 use super::direction::{power, unturned};
+use super::lattice::area_share;
 use crate::geometry::assemble::{Piece, Ring, clip};
 use crate::geometry::box_tree::BoxTree;
 use crate::geometry::polygon::{Lattice, Operation, doubled_area};
@@ -19,6 +21,9 @@ const FAR: f64 = 1.5;
 /// two stones beyond is a joint, and no empty place.
 const BESIDE: f64 = 0.05;
 
+/// Joints narrower than this share of a stone are none.
+const NO_JOINT: f64 = 1e-6;
+
 /// A joint wider than this many medians is an empty place as to what is beyond.
 const WIDE: f64 = 3.0;
 
@@ -31,8 +36,9 @@ pub(crate) struct Statistics {
     pub(crate) stones: usize,
     /// Between the stones' axes and the field, in radians: half of the angles are smaller; nine in ten are.
     pub(crate) angles: [f64; 2],
-    /// 1 if neighbours lie at whole numbers of stones along the stones' axes, 0 if they lie anywhere.
-    pub(crate) order: f64,
+    /// 1 if neighbours lie at points of the stones' lattice, 0 if they lie anywhere; none if the stones have no lattice with
+    /// one of them to a point.
+    pub(crate) order: Option<f64>,
     /// Share of stones with four corners.
     pub(crate) quads: f64,
     /// Standard deviation of the areas over their mean.
@@ -63,29 +69,35 @@ pub(crate) fn axis(outline: &[DVec2], symmetry: u32) -> Option<DVec2> {
     (sum != DVec2::ZERO).then(|| unturned(sum, symmetry))
 }
 
-/// Measures stones in a region; `field` are the directions that they should have, of length 1, at their centres.
-pub(crate) fn measure(partition: &Partition, region: &Region, field: &[DVec2]) -> Statistics {
+/// Measures stones in a region; `field` are the directions that they should have, of length 1, at their centres. None if no
+/// stone lies in the region.
+pub(crate) fn measure(
+    partition: &Partition,
+    region: &Region,
+    field: &[DVec2],
+) -> Option<Statistics> {
     let count = partition.len();
     let whole = 0.5 * region.rings().map(doubled_area).sum::<f64>();
     let mean = partition.areas.iter().sum::<f64>() / count as f64;
     let square = |area: &f64| (area - mean) * (area - mean);
     let variance = partition.areas.iter().map(square).sum::<f64>() / count as f64;
     let quads = (0..count).filter(|cell| partition.outline(*cell).len() == 4);
+    let across = across(partition, region)?;
     let ground = Ground::new(partition, region, mean.sqrt());
     let joints = ground.joints();
-    let [joint, joint_variation, empty] = summary(&joints);
-    Statistics {
+    let [joint, joint_variation, empty] = summary(&joints, mean.sqrt());
+    Some(Statistics {
         stones: count,
         angles: angles(partition, field),
         order: order(partition),
         quads: quads.count() as f64 / count as f64,
         area_variation: variance.sqrt() / mean,
-        occupancy: 1.0 - (empty + too_large(partition)) / whole,
+        occupancy: (1.0 - (empty + too_large(partition)) / whole).max(0.0),
         joint,
         joint_variation,
         overlap: ground.overlap(),
-        across: across(partition, region),
-    }
+        across,
+    })
 }
 
 /// The area by which stones are larger than half as much again as their size asks for, in mm²: room for others.
@@ -93,28 +105,17 @@ fn too_large(partition: &Partition) -> f64 {
     let Some(sizes) = partition.attributes.get("size") else {
         return 0.0;
     };
-    let pairs = || partition.areas.iter().zip(sizes);
-    let mut shares: Vec<f64> = pairs().map(|(area, size)| area / (size * size)).collect();
-    shares.sort_unstable_by(f64::total_cmp);
-    let usual = shares[shares.len() / 2];
-    let more = pairs().map(|(area, size)| (area - ROOMY * usual * size * size).max(0.0));
+    let usual = aspect(partition) * area_share(corners(partition));
+    let pairs = partition.areas.iter().zip(sizes);
+    let more = pairs.map(|(area, size)| (area - ROOMY * usual * size * size).max(0.0));
     more.sum()
-}
-
-/// After one turn in how many parts a stone looks the same.
-fn symmetry(partition: &Partition) -> u32 {
-    let corners = partition
-        .attributes
-        .get("corners")
-        .and_then(|corners| corners.first());
-    if corners == Some(&6.0) { 6 } else { 4 }
 }
 
 /// The median of the angles between stones and field, and what nine in ten are below.
 fn angles(partition: &Partition, field: &[DVec2]) -> [f64; 2] {
     let symmetry = symmetry(partition);
     let angle = |cell: usize| {
-        let own = axis(partition.outline(cell), symmetry).unwrap_or(partition.frames[cell]);
+        let own = own_axis(partition, cell);
         let between = DVec2::new(own.dot(field[cell]), own.perp_dot(field[cell]));
         let turned = power(between, symmetry);
         libm::atan2(turned.y, turned.x).abs() / f64::from(symmetry)
@@ -124,12 +125,16 @@ fn angles(partition: &Partition, field: &[DVec2]) -> [f64; 2] {
     [angles[angles.len() / 2], angles[angles.len() * 9 / 10]]
 }
 
-/// How well neighbours keep to a lattice.
-fn order(partition: &Partition) -> f64 {
-    let attribute = |name: &str| partition.attributes.get(name);
-    let size =
-        |cell: usize| attribute("size").map_or(partition.areas[cell].sqrt(), |sizes| sizes[cell]);
-    let aspect = |cell: usize| attribute("aspect").map_or(1.0, |aspects| aspects[cell]);
+/// How well neighbours keep to the lattice of their stones.
+fn order(partition: &Partition) -> Option<f64> {
+    let (apart, shift) = match corners(partition) {
+        5 => return None,
+        6 => (0.75_f64.sqrt(), 0.5),
+        _ => (1.0, bond(partition)),
+    };
+    let aspect = aspect(partition);
+    let sizes = partition.attributes.get("size");
+    let size = |cell: usize| sizes.map_or(partition.areas[cell].sqrt(), |sizes| sizes[cell]);
     let (mut sums, mut count) = ([DVec2::ZERO; 2], 0.0);
     for cell in 0..partition.len() {
         let frame = partition.frames[cell];
@@ -140,9 +145,11 @@ fn order(partition: &Partition) -> f64 {
                 offset -= period * (offset / period).round();
             }
             let step = 0.5 * (size(cell) + size(other));
+            let rows = frame.perp_dot(offset) / (apart * step);
+            // Each row is moved against the one before.
             let along = [
-                frame.dot(offset) / (aspect(cell) * step),
-                frame.perp_dot(offset) / step,
+                frame.dot(offset) / (aspect * step) - shift * rows.round(),
+                rows,
             ];
             for (sum, along) in sums.iter_mut().zip(along) {
                 let (sine, cosine) = libm::sincos(std::f64::consts::TAU * along);
@@ -152,11 +159,11 @@ fn order(partition: &Partition) -> f64 {
         }
     }
     let count = f64::max(count, 1.0);
-    0.5 * (sums[0].length() + sums[1].length()) / count
+    Some(0.5 * (sums[0].length() + sums[1].length()) / count)
 }
 
-/// Mean width, its variation, and the area of what is too wide.
-fn summary(joints: &[Joint]) -> [f64; 3] {
+/// Mean width, its variation, and the area of what is too wide; `size` is that of a stone.
+fn summary(joints: &[Joint], size: f64) -> [f64; 3] {
     let length: f64 = joints
         .iter()
         .filter(|it| !it.is_outer)
@@ -173,7 +180,7 @@ fn summary(joints: &[Joint]) -> [f64; 3] {
         let share = if it.is_outer { 1.0 } else { 0.5 };
         share * it.length * (it.width - WIDE * median).max(0.0)
     };
-    let variation = if mean > 1e-9 {
+    let variation = if mean > NO_JOINT * size {
         variance.sqrt() / mean
     } else {
         0.0
@@ -338,11 +345,8 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// How many stones lie partly outside of the region.
-fn across(partition: &Partition, region: &Region) -> usize {
-    if partition.period.is_some() {
-        return 0;
-    }
+/// How many stones lie partly outside of the region; none if all lie outside.
+fn across(partition: &Partition, region: &Region) -> Option<usize> {
     let piece = |cell: usize| Piece {
         rings: vec![Ring::straight(partition.outline(cell).to_vec())],
         id: cell as u32,
@@ -366,7 +370,10 @@ fn across(partition: &Partition, region: &Region) -> usize {
         }
     }
     let is_across = |(before, within): &(&f64, &f64)| *before - *within > 1e-6 * *before;
-    before.iter().zip(&within).filter(is_across).count()
+    let count = before.iter().zip(&within).filter(is_across).count();
+    let lies_within = within.iter().sum::<f64>() > 0.0;
+    // What repeats has no outline.
+    lies_within.then_some(if partition.period.is_some() { 0 } else { count })
 }
 
 /// Lowest and highest coordinates.

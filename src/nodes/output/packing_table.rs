@@ -1,9 +1,12 @@
 //! `packing_table`: says how good a packing is, as CSV.
 //!
-//! One row. Angles are between the axes of the stones and the direction field. A joint is measured from the edge of a stone
+//! One row. Angles are between the axes of the stones and the direction field: of oblong stones and stones in a bond up to 90
+//! degrees, of hexagons up to 30, of others up to 45. The order is 1 if neighbours lie on the stones' own lattice, and is left
+//! out for pentagons, which have none. Stones larger than half as much again as their size asks for count as empty beyond that. A joint is measured from the edge of a stone
 //! straight to the next stone, three times along each edge; where a stone is missing it is as wide as the empty place, up to one
 //! and a half stones.
 
+use crate::geometry::packing::attributes::symmetry;
 use crate::geometry::packing::direction::Directions;
 use crate::geometry::packing::statistics::{Statistics, measure};
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
@@ -14,7 +17,7 @@ use std::sync::Arc;
 /// Writes the quality of a packing as CSV.
 pub static KIND: Kind = Kind {
     name: "packing_table",
-    version: 2,
+    version: 3,
     about: "Writes how good a packing is as a CSV file: order, angles to the field, occupancy, joints, overlaps, stones across \
             the outline; stands in `outputs`.",
     source: "own construction",
@@ -54,32 +57,39 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
                 .collect()
         }
         None => {
-            let border = Directions::of_border(region, 4);
-            let at = |centre: &DVec2| border.at(*centre).direction(4);
+            let symmetry = symmetry(partition);
+            let border = Directions::of_border(region, symmetry);
+            let at = |centre: &DVec2| border.at(*centre).direction(symmetry);
             partition.centres.iter().map(at).collect()
         }
     };
     build.go_on()?;
-    let text = text(&measure(partition, region, &directions));
+    let Some(found) = measure(partition, region, &directions) else {
+        let failure = Failure::of_input("region", "none of the stones lies in the region");
+        return Err(failure.with_hint("link the region that they were packed into"));
+    };
+    let text = text(&found);
     Ok(vec![Value::Table(Arc::new(Table { text }))])
 }
 
 fn text(found: &Statistics) -> String {
     let [median, nine_in_ten] = found.angles.map(f64::to_degrees);
     let columns = [
-        ("stones", found.stones as f64),
-        ("angle_median_degrees", median),
-        ("angle_90_percent_degrees", nine_in_ten),
+        ("stones", Some(found.stones as f64)),
+        ("angle_median_degrees", Some(median)),
+        ("angle_90_percent_degrees", Some(nine_in_ten)),
         ("order", found.order),
-        ("four_corners", found.quads),
-        ("area_variation", found.area_variation),
-        ("occupancy", found.occupancy),
-        ("joint_mm", found.joint),
-        ("joint_variation", found.joint_variation),
-        ("largest_overlap", found.overlap),
-        ("across_outline", found.across as f64),
+        ("four_corners", Some(found.quads)),
+        ("area_variation", Some(found.area_variation)),
+        ("occupancy", Some(found.occupancy)),
+        ("joint_mm", Some(found.joint)),
+        ("joint_variation", Some(found.joint_variation)),
+        ("largest_overlap", Some(found.overlap)),
+        ("across_outline", Some(found.across as f64)),
     ];
     let names = columns.map(|column| column.0).join(",");
-    let numbers = columns.map(|column| column.1.to_string()).join(",");
+    let number = |number: f64| number.to_string();
+    let numbers = columns.map(|column| column.1.map(number).unwrap_or_default());
+    let numbers = numbers.join(",");
     format!("{names}\n{numbers}\n")
 }

@@ -264,7 +264,7 @@ pub(super) fn join_slivers(
         return Ok((partition, 0));
     }
     let mean = partition.areas.iter().sum::<f64>() / partition.len() as f64;
-    merge_slivers(&partition, share * mean, &mut || build.go_on())
+    merge_slivers(&partition, |_| share * mean, &mut || build.go_on())
 }
 
 /// Gives cells the values of the pieces with the same ids.

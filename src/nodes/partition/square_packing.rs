@@ -3,7 +3,8 @@
 use super::ground::{self, Ground};
 use crate::field::Field;
 use crate::geometry::packing::direction::{Directions, power};
-use crate::geometry::packing::{Guide, Law, Method, Plan, Start, bounds, pack};
+use crate::geometry::packing::{Guide, Law, Method, Plan, Start, area_share, bounds, pack};
+use crate::geometry::polygon::doubled_area;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
 use crate::nodes::random::Random;
 use crate::value::{Domain, Partition, Type, Unit, Value};
@@ -14,7 +15,7 @@ use std::sync::Arc;
 /// Packs stones.
 pub static KIND: Kind = Kind {
     name: "square_packing",
-    version: 2,
+    version: 3,
     about: "Packs stones into a region: squares, oblong stones, pentagons or hexagons that follow the border or a direction \
             field, without gaps, and fitted to the outline.",
     source: "Miyata, Itoh & Shimada, section 3 (particles); Jakob, Tarini, Panozzo & Sorkine-Hornung 2015 (position_field)",
@@ -69,7 +70,8 @@ pub static KIND: Kind = Kind {
         Input::number(
             "bond",
             Unit::One,
-            "How far each row is moved against the one before, in stones: 0.5 is a running bond. For `position_field`.",
+            "How far each row is moved against the one before, in stones: 0.5 is a running bond. For `position_field` and 4 \
+             corners.",
         )
         .default("0")
         .range(0.0, 0.5),
@@ -82,7 +84,7 @@ pub static KIND: Kind = Kind {
         Input::new(
             "start",
             Type::Choice(&["lattice", "random"]),
-            "Where `particles` begin.",
+            "Where `particles` begin: near the places of a lattice, which follows the direction unless stones are square, or anywhere.",
         )
         .default("lattice"),
         Input::new("steps", Type::Whole, "Most steps that `particles` take.")
@@ -91,7 +93,8 @@ pub static KIND: Kind = Kind {
         Input::new(
             "mend",
             Type::Toggle,
-            "Fills empty places and thins out crowded ones; left out, it is done for `position_field` alone.",
+            "Fills empty places and thins out crowded ones; left out, it is done for `position_field` and for oblong stones. \
+             Places that no stone reached are filled in any case.",
         )
         .optional(),
         Input::new("seed", Type::Whole, "Another seed gives other stones.").default("0"),
@@ -99,7 +102,7 @@ pub static KIND: Kind = Kind {
     outputs: &[Output::new(
         "cells",
         Type::Partition,
-        "A cell for each stone, with the attributes `size` (mm), `aspect` and `corners`.",
+        "A cell for each stone, with the attributes `size` (mm), `aspect`, `corners` and `bond`.",
     )],
     example: r#"(nodes: { "example": square_packing(size: (2000, 1500), stone: 100) })"#,
     build,
@@ -112,16 +115,26 @@ const LARGEST: f64 = 20.0;
 /// Most stones.
 const MOST: f64 = 4e6;
 
+/// Least area of a region, in stones.
+const ROOM: f64 = 0.25;
+
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let ground = Ground::read(inputs)?;
     let shape = Shape::read(inputs)?;
-    let guide = guide(inputs, build, &ground, &shape)?;
     let spread = spread(inputs)?;
     let method = method(inputs);
     let mends = match inputs.get("mend") {
         Some(_) => inputs.toggle("mend"),
-        None => method == Method::PositionField,
+        None => method == Method::PositionField || shape.stone.x > shape.stone.y,
     };
+    unused(inputs, method)?;
+    let mean = 0.5 * (spread[0] + spread[1]);
+    let area = mean * mean * shape.area();
+    if let Some(scale) = constant(inputs) {
+        few_enough("stone", extent(&ground) / (area * scale * scale))?;
+    }
+    let guide = guide(inputs, build, &ground, &shape)?;
+    limits(&ground, &guide, area)?;
     let plan = Plan {
         region: &ground.region,
         period: ground.period,
@@ -157,10 +170,14 @@ fn spread(inputs: &Inputs<'_>) -> Result<[f64; 2], Failure> {
 
 fn checked(partition: Partition) -> Result<Vec<Value>, Failure> {
     if partition.is_empty() {
-        let failure = Failure::of_input("stone", "no stone has room in the region");
-        return Err(failure.with_hint("take smaller stones, or a larger region"));
+        return Err(no_room());
     }
     Ok(vec![Value::Partition(Arc::new(partition))])
+}
+
+fn no_room() -> Failure {
+    let failure = Failure::of_input("stone", "no stone has room in the region");
+    failure.with_hint("take smaller stones, or a larger region")
 }
 
 fn method(inputs: &Inputs<'_>) -> Method {
@@ -180,6 +197,68 @@ fn method(inputs: &Inputs<'_>) -> Method {
     }
 }
 
+/// Refuses inputs that the method does not look at, unless they say what they say by themselves.
+fn unused(inputs: &Inputs<'_>, method: Method) -> Result<(), Failure> {
+    let stated = [
+        ("force", inputs.choice("force") != "radial"),
+        ("start", inputs.choice("start") != "lattice"),
+        ("steps", inputs.whole("steps") != 600),
+    ];
+    let found = match method {
+        Method::Particles { .. } if inputs.number("bond") != 0.0 => {
+            Some(("bond", "position_field"))
+        }
+        Method::Particles { .. } => None,
+        Method::PositionField => stated
+            .iter()
+            .find(|stated| stated.1)
+            .map(|stated| (stated.0, "particles")),
+    };
+    match found {
+        None => Ok(()),
+        Some((input, method)) => {
+            let message = format!("there is a `{input}`, but the method is not `{method}`");
+            let hint = format!("leave it out, or choose `{method}`");
+            Err(Failure::of_input(input, message).with_hint(hint))
+        }
+    }
+}
+
+/// The size factor, if it is one for all places.
+fn constant(inputs: &Inputs<'_>) -> Option<f64> {
+    let field = inputs.field("scale");
+    let scale = f64::from(*field.as_constant()?.first()?);
+    Some(scale.clamp(LEAST, LARGEST))
+}
+
+/// Refuses more stones than there may be.
+fn few_enough(input: &'static str, count: f64) -> Result<(), Failure> {
+    if count <= MOST {
+        return Ok(());
+    }
+    let message = format!("expected at most {MOST} stones, found about {count:.0}");
+    Err(Failure::of_input(input, message).with_hint("take larger stones, or a smaller region"))
+}
+
+/// Refuses more stones than there may be, also of the smallest if these were everywhere, for work is divided as finely; and
+/// regions without room for one. `area` is that of a stone of size 1, in mm².
+fn limits(ground: &Ground, guide: &Guide, area: f64) -> Result<(), Failure> {
+    few_enough("stone", extent(ground) * guide.density() / area)?;
+    let least = guide.least();
+    few_enough("scale", extent(ground) / (area * least * least))?;
+    let doubled: f64 = ground.region.rings().map(doubled_area).sum();
+    if 0.5 * doubled * guide.density() < ROOM * area {
+        return Err(no_room());
+    }
+    Ok(())
+}
+
+/// Area of the rectangle around the ground, in mm².
+fn extent(ground: &Ground) -> f64 {
+    let [low, high] = bounds(&ground.region);
+    (high - low).element_product()
+}
+
 /// What a stone is like.
 struct Shape {
     stone: DVec2,
@@ -196,6 +275,10 @@ impl Shape {
             let failure = Failure::of_input("aspect", "only stones with 4 corners can be oblong");
             return Err(failure.with_hint("leave out `aspect` or `corners`"));
         }
+        if corners != 4 && inputs.number("bond") != 0.0 {
+            let failure = Failure::of_input("bond", "only stones with 4 corners have a bond");
+            return Err(failure.with_hint("leave out `bond` or `corners`"));
+        }
         let is_oblong = aspect != 1.0 || inputs.number("bond") != 0.0;
         Ok(Shape {
             stone: DVec2::new(aspect * width, width),
@@ -209,6 +292,13 @@ impl Shape {
     }
 }
 
+impl Shape {
+    /// Area of a stone of size 1, in mm².
+    fn area(&self) -> f64 {
+        self.stone.element_product() * area_share(self.corners)
+    }
+}
+
 /// Direction and size at every place.
 fn guide(
     inputs: &Inputs<'_>,
@@ -217,14 +307,7 @@ fn guide(
     shape: &Shape,
 ) -> Result<Guide, Failure> {
     let bounds = bounds(&ground.region);
-    let extent = bounds[1] - bounds[0];
     let scale = inputs.field("scale");
-    if extent.x * extent.y > MOST * shape.stone.x * shape.stone.y {
-        let count = extent.x * extent.y / (shape.stone.x * shape.stone.y);
-        let message = format!("expected at most {MOST} stones, found about {count:.0}");
-        let failure = Failure::of_input("stone", message);
-        return Err(failure.with_hint("take larger stones, or a smaller region"));
-    }
     let (points, columns) = Guide::points(bounds, shape.stone.y);
     let turned = turned(inputs, build, ground, shape.symmetry, &points)?;
     let scales = build.sample(&scale, &points)?;

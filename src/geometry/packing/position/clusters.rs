@@ -51,7 +51,7 @@ fn agreeing(field: &Field<'_>, level: &Level) -> Vec<u32> {
 /// Whether the lattice points of two samples are one.
 fn agree(field: &Field<'_>, sample: &Sample, other: &Sample) -> bool {
     let across = field.across(sample.point, other.point);
-    let near = 0.35 * sample.scale * field.lattice.step.min_element();
+    let near = 0.35 * sample.scale.min(other.scale) * field.lattice.step.min_element();
     (other.origin + across).distance_squared(sample.origin) < near * near
 }
 
