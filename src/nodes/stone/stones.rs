@@ -98,7 +98,7 @@ pub static KIND: Kind = Kind {
         Output::field(
             "recess",
             Type::Number(Unit::One),
-            "How hidden the point is: 0 on stones, 1 in the middle of joints, soft between.",
+            "How hidden the point is: 0 on stones and on open ground, 1 in the middle of joints, soft between.",
         )
         .on(Domain::Plane),
     ],

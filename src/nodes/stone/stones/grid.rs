@@ -14,8 +14,6 @@ pub(super) struct Grid {
     /// The first of each bin's stones in `list`, and behind them its length.
     starts: Vec<u32>,
     list: Vec<u32>,
-    /// How far from a stone points know of it, in mm.
-    pub(super) reach: f32,
     period: Option<DVec2>,
 }
 
@@ -42,7 +40,6 @@ impl Grid {
             count: count.as_ivec2(),
             starts: vec![],
             list: vec![],
-            reach: reach as f32,
             period,
         };
         grid.fill(stones, reach);
@@ -114,9 +111,7 @@ impl Grid {
 
     pub(super) fn add_to_key(&self, key: &mut KeyHasher) {
         let period = self.period.unwrap_or_default();
-        key.number(f64::from(self.reach))
-            .number(period.x)
-            .number(period.y);
+        key.number(period.x).number(period.y);
     }
 }
 

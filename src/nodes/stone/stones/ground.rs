@@ -4,7 +4,7 @@ use super::cage::Cage;
 use super::depth::{Outline, Outlines};
 use super::form::Form;
 use super::grid::Grid;
-use super::top::{Found, Nearest, Part, Pixel, Seen, Top};
+use super::top::{self, Found, Nearest, Part, Pixel, Seen, Top};
 use crate::key::{Key, KeyHasher};
 use glam::{DVec2, DVec3, Vec2};
 use std::collections::BTreeMap;
@@ -45,6 +45,8 @@ pub(super) struct Ground {
     /// The surfaces over prisms of so many corners; none for setts.
     pub(super) cages: BTreeMap<usize, Cage>,
     pub(super) grid: Grid,
+    /// How far from stones a point is nearest to one, in mm.
+    pub(super) reach: f32,
     /// Forms of stones that were looked at: they take long to make and much memory, so only some are kept.
     pub(super) forms: Vec<Mutex<KeptForm>>,
 }
@@ -67,6 +69,7 @@ impl Ground {
     pub(super) fn key(&self) -> Key {
         let mut key = KeyHasher::new("stones", 1);
         self.grid.add_to_key(&mut key);
+        key.number(f64::from(self.reach));
         for stone in &self.stones {
             let lengths = [stone.corners.len() as f64];
             let worn = stone.worn.unwrap_or([f32::MAX; 2]);
@@ -103,7 +106,7 @@ impl Ground {
     #[inline]
     pub(super) fn find(&self, at: DVec2, pixel: &Pixel, hand: &mut Hand) -> Found {
         let mut top = Top::default();
-        let mut nearest = Nearest::new(-self.grid.reach);
+        let mut nearest = Nearest::new(-self.reach);
         for near in self.grid.near(at) {
             let stone = &self.stones[*near as usize];
             let point = self.grid.apart(at, stone.centre).as_vec2();
@@ -121,7 +124,31 @@ impl Ground {
                 top.add(*near, inside, part);
             }
         }
-        top.found(&nearest, pixel.width)
+        let found = top.found(&nearest, pixel.width);
+        match found.cover == 0.0 && found.share > 0.0 {
+            true => Found {
+                share: self.share(&found, at, pixel),
+                ..found
+            },
+            false => found,
+        }
+    }
+
+    /// The share of a pixel in a joint that is nearer to the other stone: that of four parts of it.
+    fn share(&self, found: &Found, at: DVec2, pixel: &Pixel) -> f32 {
+        let depth = |stone: Option<u32>, offset: Vec2| match stone {
+            None => -self.reach,
+            Some(stone) => {
+                let stone = &self.stones[stone as usize];
+                let point = self.grid.apart(at, stone.centre).as_vec2();
+                self.outlines.depth(&stone.outline, point + offset)
+            }
+        };
+        let parts = pixel.points.map(|offset| {
+            let ahead = depth(found.stone, offset) - depth(found.other, offset);
+            top::share(ahead, [found.stone, found.other], 0.5 * pixel.width)
+        });
+        0.25 * parts.iter().sum::<f32>()
     }
 
     /// What is seen of a prism, or of what is cut of it: at one point, or where it may end at four.

@@ -73,6 +73,12 @@ const CHIP: f32 = 1.5;
 /// How far on stones, in mm, a point is still in the shade of joints.
 const SHADED: f32 = 5.0;
 
+/// Over how many mm joints that are wider than usual lie open to the sky.
+pub(super) const OPEN: f32 = 4.0;
+
+/// How much wider than half of a joint a gap is before it does, as a share of the joint.
+pub(super) const WIDE: f32 = 0.75;
+
 /// What shows of stones above their bed. Columns in: the first four of [`Find`]; height of the bed, width of the chips,
 /// relief, position. Columns out: height, mask, depth, recess.
 #[derive(Debug)]
@@ -111,7 +117,8 @@ impl Kernel for Relief {
             let above = height[index] + relief[index] - lost - bed[index];
             let [share, rise] = positive(above, range[index]);
             let hidden = (SHADED - depth[index]) / (SHADED + 0.5 * self.joint);
-            let hidden = hidden.clamp(0.0, 1.0);
+            let open = (-depth[index] - WIDE * self.joint) / OPEN;
+            let hidden = hidden.clamp(0.0, 1.0) * (1.0 - open.clamp(0.0, 1.0));
             let shown = [
                 bed[index] + cover[index] * rise,
                 cover[index] * share,

@@ -5,6 +5,7 @@ use super::cage::{Cage, Cut};
 use super::depth::{Outline, Outlines};
 use super::grid::Grid;
 use super::ground::{FORMS, Ground, Stone};
+use super::kernels::{OPEN, WIDE};
 use super::optics::{Optics, pick};
 use super::outline;
 use crate::node::{Build, Failure, Inputs};
@@ -117,13 +118,20 @@ pub(super) fn lay(
     }
     if laying.stones.is_empty() {
         let failure = Failure::of_input("joint", "the joints leave nothing of any cell");
-        return Err(failure.with_hint("make them narrower than half of a cell"));
+        return Err(failure.with_hint("make them narrower"));
+    }
+    if records.len() < partition.len() {
+        let count = partition.len() - records.len();
+        inputs.warn(format!(
+            "{count} of {} cells have no room for a stone between their joints",
+            partition.len()
+        ));
     }
     let area: f64 = partition.areas.iter().map(|area| area.abs()).sum();
-    let ground = laying.finish(partition.period);
+    let widest = WIDEST * (area / records.len() as f64).sqrt();
     Ok(Laid {
-        widest: WIDEST * (area / records.len() as f64).sqrt(),
-        ground,
+        widest,
+        ground: laying.finish(partition.period, widest),
         records,
         ids,
         shares,
@@ -323,11 +331,13 @@ impl Laying {
         libm::atan(f64::from(slope)).to_degrees()
     }
 
-    fn finish(self, period: Option<DVec2>) -> Ground {
-        let reach = 0.75 * self.manner.joint + 4.0;
+    fn finish(self, period: Option<DVec2>, widest: f64) -> Ground {
+        let reach = f64::from(WIDE) * self.manner.joint + f64::from(OPEN);
         let kept = self.stones.len().min(FORMS);
         Ground {
-            grid: Grid::new(&self.stones, reach, period),
+            // A pixel that is as wide as it may be sees half of its width more.
+            grid: Grid::new(&self.stones, reach + widest, period),
+            reach: reach as f32,
             forms: std::iter::repeat_with(Default::default)
                 .take(kept)
                 .collect(),

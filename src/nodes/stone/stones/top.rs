@@ -105,13 +105,13 @@ impl Seen {
 }
 
 /// The two stones whose outlines are nearest to the middle of a pixel, each with its depth; at first none, as far away as
-/// stones are known of.
+/// stones count.
 #[derive(Debug)]
 pub(super) struct Nearest([(Option<u32>, f32); 2]);
 
 impl Nearest {
     pub(super) fn new(depth: f32) -> Nearest {
-        Nearest([(None, depth); 2])
+        Nearest([(None, depth), (None, f32::NEG_INFINITY)])
     }
 
     #[inline]
@@ -129,15 +129,10 @@ impl Nearest {
         }
     }
 
-    /// What is found in a joint: the nearest stone, and the share of the pixel that is nearer to the other. Between two
-    /// stones that face each other the difference of their depths changes by two widths of the pixel within it.
+    /// What is found in a joint: the nearest stone, and the share of a pixel of some width that is nearer to the other.
     #[inline]
     fn found(&self, width: f32) -> Found {
         let [(stone, depth), (other, beyond)] = self.0;
-        let share = match width > 0.0 {
-            true => (0.5 - 0.5 * (depth - beyond) / width).max(0.0),
-            false => 0.0,
-        };
         Found {
             height: 0.0,
             range: 0.0,
@@ -145,8 +140,23 @@ impl Nearest {
             depth,
             stone,
             other,
-            share,
+            share: share(depth - beyond, [stone, other], width),
         }
+    }
+}
+
+/// The share of a pixel that is nearer to the other of two stones, where one is deeper by `ahead` in its middle. Between two
+/// stones that face each other the difference changes by two widths of the pixel within it; where no stone is known of, by one.
+#[inline]
+pub(super) fn share(ahead: f32, stones: [Option<u32>; 2], width: f32) -> f32 {
+    let change = if stones.iter().all(Option::is_some) {
+        2.0
+    } else {
+        1.0
+    };
+    match width > 0.0 {
+        true => (0.5 - ahead / (change * width)).clamp(0.0, 1.0),
+        false => 0.0,
     }
 }
 
