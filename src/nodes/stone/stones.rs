@@ -7,6 +7,7 @@
 //! At each point the stones near it are asked for their height, and the highest counts: stones are never drawn into a
 //! picture. A pixel at a rim has the share of each stone in it: of setts by the distance to the outline, of others by four points.
 
+mod bed;
 mod cage;
 mod depth;
 mod form;
@@ -14,8 +15,10 @@ mod grid;
 mod ground;
 mod kernels;
 mod laying;
+mod manner;
 mod optics;
 mod outline;
+mod shape;
 mod top;
 
 use crate::field::Field;

@@ -1,13 +1,16 @@
 //! How stones are laid: from cells to outlines, prisms and places in the ground, each by its own random numbers.
 
 use super::KIND;
+use super::bed::{At, Bed};
 use super::cage::{Cage, Cut};
 use super::depth::{Outline, Outlines};
 use super::grid::Grid;
 use super::ground::{FORMS, Ground, Stone};
 use super::kernels::{OPEN, WIDE};
+use super::manner::Manner;
 use super::optics::{Optics, pick};
 use super::outline;
+use super::shape::{plane, swell};
 use crate::node::{Build, Failure, Inputs};
 use crate::nodes::random::Random;
 use crate::value::Partition;
@@ -27,46 +30,6 @@ pub(super) struct Laid {
     pub(super) shares: Vec<f64>,
     /// How far the top leans, in degrees.
     pub(super) tilts: Vec<f64>,
-}
-
-/// Numbers that hold for all stones, in mm and radians.
-struct Manner {
-    /// `None` for setts.
-    cut: Option<Cut>,
-    height: f64,
-    unevenness: f64,
-    deformation: f64,
-    joint: f64,
-    joint_variation: f64,
-    rounding: f64,
-    corner_radius: f64,
-    crown: f64,
-    swell: f64,
-    tilt: f64,
-}
-
-impl Manner {
-    fn read(inputs: &Inputs<'_>) -> Manner {
-        let cut = match inputs.choice("stone") {
-            "prism" => Some(Cut::Prism),
-            "round" => Some(Cut::Round),
-            "corner" => Some(Cut::Corner(inputs.number("corner_ratio"))),
-            _ => None,
-        };
-        Manner {
-            cut,
-            height: inputs.number("height"),
-            unevenness: inputs.number("unevenness"),
-            deformation: inputs.number("deformation"),
-            joint: inputs.number("joint"),
-            joint_variation: inputs.number("joint_variation"),
-            rounding: inputs.number("rounding"),
-            corner_radius: inputs.number("corner_radius"),
-            crown: inputs.number("crown"),
-            swell: inputs.number("swell"),
-            tilt: inputs.number("tilt").to_radians(),
-        }
-    }
 }
 
 /// The share of its height above which a rounded stone goes on to all sides.
@@ -92,7 +55,7 @@ pub(super) fn lay(
 ) -> Result<Laid, Failure> {
     let partition = inputs.partition("cells");
     let manner = Manner::read(inputs);
-    let grounds = Grounds::sample(inputs, build, partition)?;
+    let bed = Bed::sample(inputs, build, partition)?;
     let seed = stream(build.seed, inputs.whole("seed"));
     let mut laying = Laying {
         manner,
@@ -108,7 +71,7 @@ pub(super) fn lay(
         }
         let mut random = Random::new(seed, "stone", i64::from(partition.ids[cell]));
         let [share, record] = [(); 2].map(|()| f64::from(random.share()));
-        let at = grounds.of_cell(cell);
+        let at = bed.of_cell(cell);
         if laying.add(partition, cell, &at, &mut random) {
             records.push(pick(table, record));
             ids.push(partition.ids[cell]);
@@ -144,60 +107,6 @@ fn stream(recipe_seed: u64, node_seed: i64) -> u64 {
     let mut random = Random::new(recipe_seed, KIND.name, node_seed);
     let [high, low] = [(); 2].map(|()| u64::from(random.bits()));
     high << 32 | low
-}
-
-/// What fields say of the ground at each cell.
-struct Grounds {
-    /// Settlement in the middle and a quarter of the cell's size right, above, left and below of it.
-    settled: Vec<f32>,
-    quarters: Vec<f64>,
-    wear: Vec<f32>,
-}
-
-/// What fields say of the ground at one cell.
-struct At {
-    settled: f64,
-    slope: DVec2,
-    wear: f64,
-}
-
-impl Grounds {
-    fn sample(
-        inputs: &Inputs<'_>,
-        build: &Build<'_>,
-        partition: &Partition,
-    ) -> Result<Grounds, Failure> {
-        let quarters: Vec<f64> = partition
-            .areas
-            .iter()
-            .map(|area| 0.25 * area.abs().sqrt().max(1e-6))
-            .collect();
-        let around = partition
-            .centres
-            .iter()
-            .zip(&quarters)
-            .flat_map(|(centre, quarter)| {
-                [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y]
-                    .map(|way| *centre + way * *quarter)
-            });
-        let mut settled = inputs.sample("settle", build, &around.collect::<Vec<_>>())?;
-        let mut wear = inputs.sample("wear", build, &partition.centres)?;
-        Ok(Grounds {
-            settled: settled.swap_remove(0),
-            quarters,
-            wear: wear.swap_remove(0),
-        })
-    }
-
-    fn of_cell(&self, cell: usize) -> At {
-        let [middle, right, above, left, below] =
-            [0, 1, 2, 3, 4].map(|index| f64::from(self.settled[5 * cell + index]));
-        At {
-            settled: middle,
-            slope: DVec2::new(right - left, above - below) / (2.0 * self.quarters[cell]),
-            wear: f64::from(self.wear[cell]).clamp(0.0, 1.0),
-        }
-    }
 }
 
 /// Stones while they are laid.
@@ -354,56 +263,4 @@ fn normal(random: &mut Random) -> f64 {
     let [one, other] = [(); 2].map(|()| f64::from(random.share()));
     let size = (-2.0 * libm::log(1.0 - one)).sqrt();
     (size * libm::cos(std::f64::consts::TAU * other)).clamp(-3.0, 3.0)
-}
-
-/// The slopes of the plane that comes nearest to corners that are moved up and down.
-fn plane(base: &[DVec2], moved: &[DVec3]) -> DVec2 {
-    let pairs = || base.iter().zip(moved.iter().map(|by| by.z));
-    let count = base.len() as f64;
-    let middle = base.iter().sum::<DVec2>() / count;
-    let mean = pairs().map(|(_, z)| z).sum::<f64>() / count;
-    let (mut xx, mut xy, mut yy, mut z) = (0.0, 0.0, 0.0, DVec2::ZERO);
-    for (corner, height) in pairs() {
-        let from = *corner - middle;
-        (xx, xy, yy) = (
-            xx + from.x * from.x,
-            xy + from.x * from.y,
-            yy + from.y * from.y,
-        );
-        z += from * (height - mean);
-    }
-    let determinant = xx * yy - xy * xy;
-    match determinant > 1e-9 * (xx + yy) * (xx + yy) {
-        true => DVec2::new(yy * z.x - xy * z.y, xx * z.y - xy * z.x) / determinant,
-        false => DVec2::ZERO,
-    }
-}
-
-/// Enlarges a prism so that what is cut of it fills its cell and its height, or part of the way there.
-fn swell(cage: &Cage, corners: &mut [DVec3], base: &[DVec2], share: f64) {
-    let points: Vec<DVec3> = cage
-        .vertices
-        .iter()
-        .map(|it| Cage::blend(it, corners))
-        .collect();
-    let mut scale = f64::INFINITY;
-    for (index, from) in base.iter().enumerate() {
-        let outwards = -(base[(index + 1) % base.len()] - *from)
-            .normalize_or_zero()
-            .perp();
-        let support = points
-            .iter()
-            .map(|point| point.truncate().dot(outwards))
-            .fold(0.0, f64::max);
-        if support > 0.0 {
-            scale = scale.min(from.dot(outwards) / support);
-        }
-    }
-    let high = points.iter().map(|point| point.z).fold(0.0, f64::max);
-    let top = corners.iter().map(|corner| corner.z).fold(0.0, f64::max);
-    let grown = |scale: f64| 1.0 + (scale.clamp(1.0, 3.0) - 1.0) * share;
-    let (flat, up) = (grown(scale), grown(top / high.max(1e-9)));
-    for corner in corners {
-        *corner = DVec3::new(flat * corner.x, flat * corner.y, up * corner.z);
-    }
 }
