@@ -67,19 +67,14 @@ fn main() {
         ("without its heights", graph("", "thickness: 40")),
         ("on a block", graph(HEIGHT, &format!("on: \"slab\", {sun}"))),
     ];
-    let engine = || {
-        let options = Options {
-            threads: Some(2),
-            memory: 0,
-            ..Options::default()
-        };
-        Engine::new(Arc::new(Memory::default()), options).expect("there are threads")
+    let options = Options {
+        threads: Some(2),
+        memory: 0,
+        ..Options::default()
     };
+    let engine = Engine::new(Arc::new(Memory::default()), options).expect("there are threads");
     for (name, other) in cases {
-        let time = |graph: &Graph| {
-            let engine = engine();
-            seconds(&mut || render(&engine, graph))
-        };
+        let time = |graph: &Graph| seconds(&mut || render(&engine, graph));
         let pairs: Vec<[f64; 2]> = (0..PAIRS).map(|_| [time(&relief), time(&other)]).collect();
         let ratio = median(pairs.iter().map(|[a, b]| a / b).collect());
         let [with, without] =

@@ -39,7 +39,7 @@ const CHANNEL: &str = "view";
 /// Shaded pictures.
 pub static KIND: Kind = Kind {
     name: "view",
-    version: 2,
+    version: 3,
     about: "Draws a shaded picture of a mesh and its material, cut open by planes if you like, or of a flat piece with its relief \
             as it lies on the ground; stands in `outputs`.",
     source: "own construction; shading after Walter and others 2007, Karis 2013, Fdez-Agüera 2019",

@@ -35,21 +35,31 @@ pub(crate) struct Force {
     inverse: f64,
 }
 
+/// Distance from which on a cubic is 0.
+const FAR: f64 = 1.5;
+
 /// The cubic f(w) = 1.25 w³ − 2.375 w² + 1.125 up to 1.5, and 0 beyond: the only one with f'(0) = 0, f(1) = 0, f(1.5) = 0
 /// and f'(1) = −1.
+///
+/// At its end it is 0 to the last bit, so none has to be told apart: which particles are far is hard to foresee.
+#[inline]
 pub(crate) fn cubic(w: f64) -> f64 {
-    if w < 1.5 {
-        (1.25 * w - 2.375) * (w * w) + 1.125
-    } else {
-        0.0
-    }
+    let w = w.min(FAR);
+    (1.25 * w - 2.375) * (w * w) + 1.125
+}
+
+/// The cubic of a distance whose square is given.
+#[inline]
+fn of_square(square: f64) -> f64 {
+    let square = square.min(FAR * FAR);
+    (1.25 * square.sqrt() - 2.375) * square + 1.125
 }
 
 impl Force {
     /// The force of squares (4 corners), pentagons (5) or hexagons (6); the middle of a side lies on the x axis, of
     /// pentagons halfway between the axes, as in a Cairo tiling along them.
     pub(crate) fn new(corners: u32, law: Law) -> Force {
-        let count = (corners as usize).clamp(3, MOST);
+        let count = (corners as usize).clamp(4, MOST);
         let part = std::f64::consts::PI / count as f64;
         let first = part + Force::first_side(corners);
         let radius = 0.5 / libm::cos(part);
@@ -85,15 +95,21 @@ impl Force {
     /// The share of the corners in the sum.
     #[inline]
     fn of_corners(&self, point: DVec2) -> f64 {
-        let mut sum = 0.0;
-        for corner in &self.corners[..self.count] {
-            let square = self.inverse * self.inverse * point.distance_squared(*corner);
-            // Most corners are too far away, so their roots are not taken.
-            if square < 2.25 {
-                sum += (1.25 * square.sqrt() - 2.375) * square + 1.125;
+        CORNER
+            * match self.count {
+                4 => self.cubics::<4>(point),
+                5 => self.cubics::<5>(point),
+                _ => self.cubics::<MOST>(point),
             }
-        }
-        CORNER * sum
+    }
+
+    /// The sum of the cubics of so many corners.
+    #[inline]
+    fn cubics<const COUNT: usize>(&self, point: DVec2) -> f64 {
+        let scale = self.inverse * self.inverse;
+        let first: [DVec2; COUNT] = std::array::from_fn(|index| self.corners[index]);
+        let cubics = first.map(|corner| of_square(scale * point.distance_squared(corner)));
+        cubics.iter().sum()
     }
 
     /// The force on another particle at a point in the particle's frame, in stones; none in its very middle.

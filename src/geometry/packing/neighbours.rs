@@ -6,6 +6,9 @@ use rayon::prelude::*;
 /// Particles that one task looks after.
 pub(crate) const CHUNK: usize = 256;
 
+/// Width of tiles as a share of the reach.
+const TILE: f64 = 0.5;
+
 /// Lists of the particles that are near each particle.
 #[derive(Debug, Default)]
 pub(crate) struct Neighbours {
@@ -90,7 +93,7 @@ fn layers(sources: &[(u32, DVec2)], places: &[DVec2], reaches: &[f64]) -> Vec<La
         return vec![Layer {
             reach: farthest,
             items: None,
-            tiles: Tiles::new(places, farthest),
+            tiles: Tiles::new(places, TILE * farthest),
         }];
     }
     let mut layers = vec![];
@@ -104,7 +107,7 @@ fn layers(sources: &[(u32, DVec2)], places: &[DVec2], reaches: &[f64]) -> Vec<La
         let own: Vec<DVec2> = items.iter().map(|item| places[*item as usize]).collect();
         layers.push(Layer {
             reach,
-            tiles: Tiles::new(&own, reach),
+            tiles: Tiles::new(&own, TILE * reach),
             items: Some(items),
         });
         reach *= 0.5;

@@ -139,14 +139,13 @@ impl Dynamics<'_> {
                     None => &stones[source],
                 };
                 let mut scale = 0.5 * (stone.scale + other.scale);
-                let mut within = other.within(stone.point - other.point) * inverse / scale;
+                let mut within =
+                    other.within(stone.point - other.point) * (inverse * (1.0 / scale));
                 if has_unlike {
                     let smaller = (UNLIKE * stone.scale.min(other.scale)).min(scale) / scale;
                     (within, scale) = (beside(within, smaller), smaller * scale);
                 }
-                if within.length_squared() < REACH * REACH {
-                    sum += other.frame.rotate(self.force.at(within) * self.stone) * scale;
-                }
+                sum += other.frame.rotate(self.force.at(within) * self.stone) * scale;
             }
             sum
         };

@@ -14,14 +14,21 @@ const ROUNDS: u32 = 16;
 
 /// Sorts sites for insertion; of those at one place the one with the lowest seed comes first.
 pub(super) fn sort(sites: &[Site]) -> Vec<Site> {
-    let mut keyed: Vec<(u64, Site)> = sites.par_iter().map(|site| (key(site), *site)).collect();
+    let mut keyed: Vec<(u64, u32)> = sites
+        .par_iter()
+        .enumerate()
+        .map(|(index, site)| (key(site), index as u32))
+        .collect();
     keyed.par_sort_unstable_by(|(a, first), (b, second)| {
-        a.cmp(b)
-            .then_with(|| first.at.x.total_cmp(&second.at.x))
-            .then_with(|| first.at.y.total_cmp(&second.at.y))
-            .then_with(|| first.seed.cmp(&second.seed))
+        a.cmp(b).then_with(|| {
+            let [first, second] = [first, second].map(|index| &sites[*index as usize]);
+            let by_x = first.at.x.total_cmp(&second.at.x);
+            let by_place = by_x.then_with(|| first.at.y.total_cmp(&second.at.y));
+            by_place.then_with(|| first.seed.cmp(&second.seed))
+        })
     });
-    keyed.into_iter().map(|(_, site)| site).collect()
+    let sorted = keyed.par_iter().map(|(_, index)| sites[*index as usize]);
+    sorted.collect()
 }
 
 /// The round, then the place along the curve.

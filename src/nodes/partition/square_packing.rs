@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Packs stones.
 pub static KIND: Kind = Kind {
     name: "square_packing",
-    version: 3,
+    version: 4,
     about: "Packs stones into a region: squares, oblong stones, pentagons or hexagons that follow the border or a direction \
             field, without gaps, and fitted to the outline.",
     source: "Miyata, Itoh & Shimada, section 3 (particles); Jakob, Tarini, Panozzo & Sorkine-Hornung 2015 (position_field)",

@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// Lets a material into another.
 pub static KIND: Kind = Kind {
     name: "inlay",
-    version: 2,
+    version: 3,
     about: "Lets one flat material into another, inside a region or the cells of a partition: with a gap, a glue line, a \
             step in height and chamfered edges, in all channels alike.",
     source: "own construction: a profile of the distance to the outline; shade of a groove after Lambert's cosine law",
@@ -142,7 +142,9 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let (ground, of) = (inputs.material("ground"), inputs.material("of"));
     let outline = outline(inputs, build)?;
     let cut = Cut::read(inputs);
-    let zones = build.kernel(Zones::new(&cut), outline.into());
+    let across = Field::position(Domain::Plane).part(0, 1);
+    let [border, beyond] = outline;
+    let zones = build.kernel(Zones::new(&cut), vec![border, beyond, across]);
     let shares = zones.part(0, 2);
     let seen = build.kernel(Seen, vec![shares.clone()]);
     let channels = pairs(ground, of, ["ground", "of"], inputs)?;

@@ -60,13 +60,8 @@ struct Surface {
     occlusion: f32,
 }
 
-/// The sides of a flat piece, of which its material knows only the upper edge.
-const SIDE: Surface = Surface {
-    colour: Vec3::new(0.15, 0.146, 0.14),
-    roughness: 0.9,
-    metalness: 0.0,
-    occlusion: 1.0,
-};
+/// How bright the sides of a flat piece are beside its upper edge, which is all that its material knows of them.
+const SIDE: f32 = 0.45;
 
 impl Kernel for Shade {
     fn add_to_key(&self, key: &mut KeyHasher) {
@@ -134,16 +129,15 @@ impl Shade {
         let is_bark = self.has_bark && !is_cut_face(number as u32);
         let first = self.materials() + if is_bark { MATERIAL } else { 0 };
         let value = |part: usize| column(first + part);
-        let is_side = self.stage.scene.relief.is_some() && is_cut_face(number as u32);
-        let surface = match is_side {
-            true => SIDE,
-            false => Surface {
-                colour: Vec3::new(value(0), value(1), value(2)).clamp(Vec3::ZERO, Vec3::ONE),
-                roughness: value(4).clamp(0.045, 1.0),
-                metalness: value(5).clamp(0.0, 1.0),
-                occlusion: value(6).clamp(0.0, 1.0),
-            },
+        let mut surface = Surface {
+            colour: Vec3::new(value(0), value(1), value(2)).clamp(Vec3::ZERO, Vec3::ONE),
+            roughness: value(4).clamp(0.045, 1.0),
+            metalness: value(5).clamp(0.0, 1.0),
+            occlusion: value(6).clamp(0.0, 1.0),
         };
+        if self.stage.scene.relief.is_some() && is_cut_face(number as u32) {
+            surface = surface.side();
+        }
         let bent = if self.has_relief {
             bend(normal, inputs, index, first + 3)
         } else {
@@ -280,6 +274,16 @@ struct Lit {
 }
 
 impl Surface {
+    /// The side below such an edge.
+    fn side(self) -> Surface {
+        Surface {
+            colour: self.colour * SIDE,
+            roughness: self.roughness.max(0.8),
+            occlusion: 1.0,
+            ..self
+        }
+    }
+
     /// What is reflected of light from straight ahead.
     fn straight(&self) -> Vec3 {
         Vec3::splat(PLAIN).lerp(self.colour, self.metalness)

@@ -29,16 +29,10 @@ struct Group {
     origins: [Vec4; 2],
     /// The changes of the second and third corners' shares along x and y.
     shares: [[Vec4; 2]; 2],
-    facets: [Facet; 4],
-}
-
-/// The surface over a triangle.
-#[derive(Clone, Copy, Debug, Default)]
-struct Facet {
-    heights: [f32; 3],
+    heights: [Vec4; 3],
     /// How much higher the tangent at corner i is at corner j than the surface; the six pairs (i, j) in the order
     /// 01, 02, 10, 12, 20, 21.
-    bends: [f32; 6],
+    bends: [Vec4; 6],
 }
 
 /// How far outside a triangle a point may lie, so that there are no cracks.
@@ -51,21 +45,17 @@ impl Group {
         let [x, y] = [point.x - self.origins[0], point.y - self.origins[1]];
         let [b, c] = self.shares.map(|[along, across]| along * x + across * y);
         let a = 1.0 - b - c;
-        let mut hits = a.min(b).min(c).cmpge(Vec4::splat(SLACK)).bitmask();
-        let mut highest = lowest;
-        while hits != 0 {
-            let lane = hits.trailing_zeros() as usize;
-            highest = highest.max(self.facets[lane].height([a[lane], b[lane], c[lane]]));
-            hits &= hits - 1;
+        let is_hit = a.min(b).min(c).cmpge(Vec4::splat(SLACK));
+        if !is_hit.any() {
+            return lowest;
         }
-        highest
+        let heights = Vec4::select(is_hit, self.heights([a, b, c]), Vec4::splat(lowest));
+        lowest.max(heights.max_element())
     }
-}
 
-impl Facet {
-    /// The height where the corners have these shares.
-    #[inline]
-    fn height(&self, [a, b, c]: [f32; 3]) -> f32 {
+    /// The heights of all four surfaces where the corners have these shares.
+    #[inline(always)]
+    fn heights(&self, [a, b, c]: [Vec4; 3]) -> Vec4 {
         let [ab, ac, ba, bc, ca, cb] = self.bends;
         let flat = a * self.heights[0] + b * self.heights[1] + c * self.heights[2];
         let sides =
@@ -112,7 +102,7 @@ impl Form {
         let boxes = || groups.iter().map(|(_, bounds)| *bounds);
         let low = boxes().fold(Vec2::INFINITY, |low, [it, _]| low.min(it));
         let high = boxes().fold(Vec2::NEG_INFINITY, |high, [_, it]| high.max(it));
-        let side = (2 * groups.len()).isqrt().clamp(1, 64) as u32;
+        let side = (8 * groups.len()).isqrt().clamp(1, 64) as u32;
         let scale = side as f32 / (high - low).max(Vec2::splat(1e-6));
         let bins_of = |bounds: Bounds| {
             let [from, to] = bounds.map(|corner| bin((corner - low) * scale, side));
@@ -192,7 +182,8 @@ fn group(
     let mut group = Group {
         origins: [Vec4::NAN; 2],
         shares: [[Vec4::ZERO; 2]; 2],
-        facets: [Facet::default(); 4],
+        heights: [Vec4::ZERO; 3],
+        bends: [Vec4::ZERO; 6],
     };
     let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
     for (lane, (corners, slopes)) in triangles.enumerate() {
@@ -208,7 +199,12 @@ fn group(
                 to[axis][lane] = share[axis] as f32;
             }
         }
-        group.facets[lane] = facet(corners, slopes);
+        for (to, corner) in group.heights.iter_mut().zip(corners) {
+            to[lane] = corner.z as f32;
+        }
+        for (to, bend) in group.bends.iter_mut().zip(bends(corners, slopes)) {
+            to[lane] = bend;
+        }
         for corner in corners.map(|corner| corner.truncate().as_vec2()) {
             (low, high) = (low.min(corner), high.max(corner));
         }
@@ -216,9 +212,9 @@ fn group(
     low.is_finite().then_some((group, [low, high]))
 }
 
-/// The surface over a triangle with these slopes at its corners.
-fn facet(corners: [DVec3; 3], slopes: [Option<[f64; 2]>; 3]) -> Facet {
-    let bend = |from: usize, to: usize| {
+/// How much higher tangents with these slopes are than the corners of a triangle, in the order of [`Group::bends`].
+fn bends(corners: [DVec3; 3], slopes: [Option<[f64; 2]>; 3]) -> [f32; 6] {
+    let bend = |(from, to): (usize, usize)| {
         let way = corners[to] - corners[from];
         // Along an edge both its triangles are the same, so it takes both ends.
         match [slopes[from], slopes[to]] {
@@ -226,11 +222,7 @@ fn facet(corners: [DVec3; 3], slopes: [Option<[f64; 2]>; 3]) -> Facet {
             _ => 0.0,
         }
     };
-    let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
-    Facet {
-        heights: corners.map(|corner| corner.z as f32),
-        bends: pairs.map(|(from, to)| bend(from, to)),
-    }
+    [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(bend)
 }
 
 #[cfg(test)]

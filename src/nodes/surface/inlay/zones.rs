@@ -101,20 +101,29 @@ impl Cut {
     }
 }
 
-/// The zones around an outline. Columns in: distance to it, id of the cell that touches it or -1. Columns out: share of glue, share of what
+/// Where outlines meet or bend, pixels are looked at as closely as this share of the gap asks for.
+const DETAIL: f64 = 0.5;
+
+/// The zones around an outline. Columns in: distance to it, id of the cell that touches it or -1, position along u. Columns out: share of glue, share of what
 /// is let in, what is added to the height in mm, what is left of the light.
 #[derive(Debug)]
 pub(super) struct Zones {
     profile: Profile<4>,
     /// Where a cell touches the outline.
     mirrored: Profile<4>,
+    /// Width in mm of what is to be seen.
+    detail: f64,
 }
 
 impl Zones {
     pub(super) fn new(cut: &Cut) -> Zones {
         let [profile, mirrored] = [cut.profile(), cut.mirrored()]
             .map(|(pieces, end)| Profile::new(pieces, end, Ends::Stay));
-        Zones { profile, mirrored }
+        Zones {
+            profile,
+            mirrored,
+            detail: DETAIL * cut.gap,
+        }
     }
 }
 
@@ -123,6 +132,7 @@ impl Kernel for Zones {
         key.text("zones of inlay").whole(i64::from(KIND.version));
         self.profile.add_to_key(key);
         self.mirrored.add_to_key(key);
+        key.number(self.detail);
     }
 
     fn width(&self) -> usize {
@@ -140,6 +150,10 @@ impl Kernel for Zones {
     fn sampling(&self) -> Sampling {
         // Where another cell or another edge is nearer, the distance has a kink.
         self.profile.sampling()
+    }
+
+    fn widest(&self) -> Option<(usize, f32)> {
+        (self.detail > 0.0).then_some((2, self.detail as f32))
     }
 
     fn nanoseconds(&self) -> f32 {
