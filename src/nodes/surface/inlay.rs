@@ -143,8 +143,8 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     let outline = outline(inputs, build)?;
     let cut = Cut::read(inputs);
     let across = Field::position(Domain::Plane).part(0, 1);
-    let [border, beyond] = outline;
-    let zones = build.kernel(Zones::new(&cut), vec![border, beyond, across]);
+    let [border, beyond, index] = outline;
+    let zones = build.kernel(Zones::new(&cut), vec![border, beyond, across.clone()]);
     let shares = zones.part(0, 2);
     let seen = build.kernel(Seen, vec![shares.clone()]);
     let channels = pairs(ground, of, ["ground", "of"], inputs)?;
@@ -167,10 +167,12 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
             false => {
                 // What the glue does not say is as on the ground.
                 let glue = glue.unwrap_or_else(|| a.clone());
-                build.kernel(
-                    Joined { width },
-                    vec![seen.clone(), shares.clone(), a, glue, b],
-                )
+                let joined = Joined {
+                    width,
+                    detail: cut.detail(),
+                };
+                let columns = [&seen, &shares, &a, &glue, &b, &index, &across];
+                build.kernel(joined, columns.map(Field::clone).into())
             }
         };
         let field = match name.as_str() {
@@ -194,8 +196,9 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
     ])
 }
 
-/// The distance to the outline, above 0 inside, and the id of the cell that touches it there, -1 for none.
-fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure> {
+/// The distance to the outline, above 0 inside, the id of the cell that touches it there, -1 for none, and the index of the
+/// nearest cell.
+fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 3], Failure> {
     let stated = ["region", "cells"].map(|name| inputs.get(name).is_some());
     match stated {
         [true, false] => {
@@ -214,8 +217,8 @@ fn outline(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<[Field; 2], Failure
     }
 }
 
-/// The distance to the border, and which cell is beyond it, -1 for none. Warns if all of them are beside the ground.
-fn of_cells(cells: &Arc<Partition>, inputs: &Inputs<'_>, build: &Build<'_>) -> [Field; 2] {
+/// What [`outline`] gives, of cells. Warns if all of them are beside the ground.
+fn of_cells(cells: &Arc<Partition>, inputs: &Inputs<'_>, build: &Build<'_>) -> [Field; 3] {
     let is_beside = |[width, height]: [f64; 2]| {
         let beside = |cell: usize| {
             let [low, high] = cells.box_of(cell);
@@ -232,5 +235,5 @@ fn of_cells(cells: &Arc<Partition>, inputs: &Inputs<'_>, build: &Build<'_>) -> [
         true => found.beyond(),
         false => Field::constant(-1.0),
     };
-    [found.border(), beyond]
+    [found.border(), beyond, found.index()]
 }

@@ -32,6 +32,11 @@ impl Cut {
         }
     }
 
+    /// Width in mm of what is to be seen where outlines meet or bend.
+    pub(super) fn detail(&self) -> f64 {
+        0.5 * self.gap
+    }
+
     /// The share of the sky that the bottom of the gap sees.
     fn openness(&self) -> f64 {
         let half = 0.5 * self.gap;
@@ -101,9 +106,6 @@ impl Cut {
     }
 }
 
-/// Where outlines meet or bend, pixels are looked at as closely as this share of the gap asks for.
-const DETAIL: f64 = 0.5;
-
 /// The zones around an outline. Columns in: distance to it, id of the cell that touches it or -1, position along u. Columns out: share of glue, share of what
 /// is let in, what is added to the height in mm, what is left of the light.
 #[derive(Debug)]
@@ -122,7 +124,7 @@ impl Zones {
         Zones {
             profile,
             mirrored,
-            detail: DETAIL * cut.gap,
+            detail: cut.detail(),
         }
     }
 }
@@ -203,22 +205,39 @@ impl Kernel for Seen {
     }
 }
 
-/// Columns in: what is seen; shares of glue and of what is let in; those of the ground, of the glue, and of what is let in.
+/// Columns in: what is seen; shares of glue and of what is let in; those of the ground, of the glue, and of what is let in; index
+/// of the cell; position along u.
+///
+/// Where another cell begins within a pixel, which of them shows and what it is go together, so their means do not do.
 #[derive(Debug)]
 pub(super) struct Joined {
     /// Columns of each.
     pub(super) width: usize,
+    /// Width in mm of what is to be seen.
+    pub(super) detail: f64,
 }
 
 impl Kernel for Joined {
     fn add_to_key(&self, key: &mut KeyHasher) {
         key.text("joined by inlay")
             .whole(i64::from(KIND.version))
-            .whole(self.width as i64);
+            .whole(self.width as i64)
+            .number(self.detail);
     }
 
     fn width(&self) -> usize {
         self.width
+    }
+
+    fn sampling(&self) -> Sampling {
+        Sampling::FilteredWhereEven {
+            column: 3 + 3 * self.width,
+            absolute: 0.5,
+        }
+    }
+
+    fn widest(&self) -> Option<(usize, f32)> {
+        (self.detail > 0.0).then_some((4 + 3 * self.width, self.detail as f32))
     }
 
     fn alternatives(&self) -> Option<Alternatives> {
