@@ -86,7 +86,27 @@ const WARNED: &[(&str, &str)] = &[
         "far": region_shape(size: (10, 10), at: (300, 0)), "it": inlay(ground: "board", of: "board", region: "far")"#,
         "nothing is let in: the outline lies beside the ground",
     ),
+    (
+        r#""shape": region_shape(size: (70, 30), at: (15, 15)), "it": inlay(ground: "oak", of: "oak", region: "shape", gap: 32)"#,
+        "nothing of the inlay is left: the gap of 32 mm takes 16 mm off every side; it has room for a `gap` below 30 mm",
+    ),
+    (
+        r#""squares": split_cells(size: (100, 100), pattern: grid, length: 40, width: 20), "it": inlay(ground: "oak", of: "oak", cells: "squares", gap: 20.5)"#,
+        "nothing of the inlay is left: the gap of 20.5 mm takes 10.25 mm off every side; every cell has room for a `gap` below 20 mm",
+    ),
+    (
+        r#""board": slice_cut(of: "oak", origin: (0, 0, 0), across: (1, 0, 0), along: (0, 0, 1), size: (40, 40)),
+        "shape": region_shape(size: (70, 30), at: (15, 5)), "it": inlay(ground: "oak", of: "board", region: "shape")"#,
+        "the piece that is let in ends 45 mm before its outline does: it is 40 x 40 mm, and the outline reaches (85.0, 35.0) mm",
+    ),
 ];
+
+#[test]
+fn an_inlay_with_room_is_not_warned_of() {
+    let inlay = r#""board": slice_cut(of: "oak", origin: (0, 0, 0), across: (1, 0, 0), along: (0, 0, 1), size: (100, 80)),
+        "it": inlay(ground: "board", of: "board", cells: "cells", gap: 7)"#;
+    assert_eq!(said(inlay), (String::new(), vec![]));
+}
 
 #[test]
 fn what_is_likely_a_mistake_is_warned_of() {

@@ -108,14 +108,16 @@ fn warn_of_rest(inputs: &Inputs<'_>, rest: &[Option<Rest>]) -> Result<(), Failur
         return Err(Failure::of_input("joint", "nothing is left of any cell")
             .with_hint("make the joints narrower"));
     }
+    let of_all = |count, does, do_all| {
+        let verb = if count == 1 { does } else { do_all };
+        format!("{count} of {all} cells {verb} between their joints")
+    };
     if vanished > 0 {
-        let message = format!("{vanished} of {all} cells vanish between their joints");
-        inputs.warn(message);
+        inputs.warn(of_all(vanished, "vanishes", "vanish"));
     }
     if apart > 0 {
-        inputs.warn(format!(
-            "{apart} of {all} cells fall apart between their joints: the largest part of each is kept"
-        ));
+        let said = of_all(apart, "falls apart", "fall apart");
+        inputs.warn(format!("{said}: the largest part of each is kept"));
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ mod woven;
 use super::division::{MERGE_BELOW, Pieces, Plot, WITHIN, covered, divided};
 use super::ground::{PERIOD, REGION, SIZE};
 use crate::geometry::assemble::{Piece, Ring};
-use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output, stretched};
 use crate::nodes::random::Random;
 use crate::value::{Type, Unit, Value};
 use glam::DVec2;
@@ -144,12 +144,13 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 
 /// Says by how much the pattern was stretched.
 fn warn_of_stretch(inputs: &Inputs<'_>, stretch: DVec2) {
-    if (stretch - 1.0).abs().max_element() > 1e-6 {
-        inputs.warn(format!(
-            "the pattern was made {:.2} % longer and {:.2} % wider, so that it closes",
-            100.0 * (stretch.x - 1.0),
-            100.0 * (stretch.y - 1.0)
-        ));
+    let factors = [
+        (stretch.x, ["longer", "shorter"]),
+        (stretch.y, ["wider", "narrower"]),
+    ];
+    let said = stretched(&factors, 2);
+    if !said.is_empty() {
+        inputs.warn(format!("the pattern was made {said}, so that it closes"));
     }
 }
 
