@@ -224,6 +224,54 @@ fn warned_of_again(recipe: &str, expected: &str) {
     assert_eq!(stderr(&place.render(&[])), first);
 }
 
+#[test]
+fn maps_that_cannot_show_what_they_ask_for_say_so() {
+    let said = |maps: &str| {
+        let place = Place::new(&format!(
+            r##"(
+            nodes: {{
+                "tile": split_cells(period: (40, 40), pattern: rows, length: 20, width: 10),
+                "found": cell_fields(cells: "tile"),
+                "wood": material(base_color: "#c8a06e", height: "= 1 mm * found.random", extras: {{"id": "found.id"}}),
+            }},
+            outputs: {{ "it": maps(of: "wood", pixels: (4, 4), {maps}) }},
+        )"##
+        ));
+        stderr(&place.render(&[]))
+    };
+    let cases = [
+        (
+            "size: (40, 40), channels: [base_color, base_colour, heigth]",
+            "the material has no channels `base_colour` and `heigth`",
+        ),
+        (
+            "size: (40, 40), channels: [base_color, base_colour, heigth]",
+            "did you mean `base_color`, `height`?",
+        ),
+        (
+            "size: (40, 40), channels: [id]",
+            "ids are whole numbers: write `format: exr_float`",
+        ),
+        (
+            "size: (40, 40), channels: [id], ranges: [(channel: \"id\", low: 0, high: 1000)]",
+            "`id` from 0 to 1000 does not fit into the 256 values of png8, so different ids look the same",
+        ),
+        (
+            "size: (100, 40), channels: [normal]",
+            "the picture shows 100 x 40 mm of cells that repeat every 40 x 40 mm, so it has a seam where it is tiled; \
+             80 x 40 mm would have none",
+        ),
+    ];
+    for (maps, expected) in cases {
+        assert!(said(maps).contains(expected), "{maps}: {}", said(maps));
+    }
+    let ids = "channels: [id], ranges: [(channel: \"id\", low: 0, high: 255)]";
+    for size in ["80, 40", "20, 20"] {
+        let told = said(&format!("size: ({size}), {ids}"));
+        assert_eq!(told, "");
+    }
+}
+
 /// The entry with another payload, as one writes it who knows how entries are made.
 fn sealed(entry: &[u8], payload: &[u8]) -> Vec<u8> {
     let text = |range| std::str::from_utf8(&entry[range]).unwrap();

@@ -5,10 +5,12 @@
 //! plain values for the rest: ratios as they are, normals as (n + 1) / 2, lengths and extras scaled from their
 //! range. Floats (EXR, `tiff_half`, `tiff_float`) hold everything as it is, colours linear.
 
-use crate::diagnostics::nearest;
+mod channels;
+
+use self::channels::{check_range, known_channels, ranged};
+use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
-use crate::nodes::surface::material::STANDARD_CHANNELS;
-use crate::value::{Domain, FileType, MapFormat, Maps, Material, Type, Unit, Value};
+use crate::value::{Domain, MapFormat, Maps, Material, Type, Unit, Value};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -113,6 +115,7 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         return Err(Failure::of_input("channels", message).with_hint("remove one of them"));
     }
     let pixels = pixels(inputs, size)?;
+    warn_of_seams(inputs, size, &channels, material);
     let maps = Maps {
         material: (**material).clone(),
         pixels,
@@ -123,18 +126,6 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         ranges,
     };
     Ok(vec![Value::Maps(Arc::new(maps))])
-}
-
-/// The channels of `ranges`, in their order.
-fn ranged<'i>(inputs: &Inputs<'i>) -> impl Iterator<Item = &'i String> {
-    let channel = |item: &'i Value| match item {
-        Value::Record(parts) => parts.iter().find_map(|part| match part {
-            ("channel", Value::Text(channel)) => Some(channel),
-            _ => None,
-        }),
-        _ => None,
-    };
-    inputs.list("ranges").iter().filter_map(channel)
 }
 
 fn ranges(inputs: &Inputs<'_>) -> Result<BTreeMap<String, [f64; 2]>, Failure> {
@@ -158,116 +149,6 @@ fn ranges(inputs: &Inputs<'_>) -> Result<BTreeMap<String, [f64; 2]>, Failure> {
     Ok(ranges)
 }
 
-/// Refuses names that are no channel of the material, all of them at once, each with the nearest that is one.
-fn known_channels<'c>(
-    input: &'static str,
-    names: impl Iterator<Item = &'c String>,
-    material: &Material,
-) -> Result<(), Failure> {
-    let known = || {
-        let channels = material.channels.keys();
-        channels.map(String::as_str).chain(["normal"])
-    };
-    let unknown: Vec<(usize, &String)> = names
-        .enumerate()
-        .filter(|(_, name)| !known().any(|known| known == *name))
-        .collect();
-    let Some((first, _)) = unknown.first() else {
-        return Ok(());
-    };
-    let listed: Vec<String> = unknown
-        .iter()
-        .map(|(_, name)| format!("`{name}`"))
-        .collect();
-    let message = match &listed[..] {
-        [only] => format!("the material has no channel {only}"),
-        [rest @ .., last] => {
-            let rest = rest.join(", ");
-            format!("the material has no channels {rest} and {last}")
-        }
-        [] => return Ok(()),
-    };
-    let mut near: Vec<String> = unknown
-        .iter()
-        .filter_map(|(_, name)| {
-            nearest(name, known())
-                .first()
-                .map(|near| format!("`{near}`"))
-        })
-        .collect();
-    near.dedup();
-    let suggestion = match near.is_empty() {
-        true => String::new(),
-        false => format!("did you mean {}? ", near.join(", ")),
-    };
-    let all = known().collect::<Vec<_>>().join(", ");
-    Err(Failure::of_input(input, message)
-        .at_item(*first)
-        .with_hint(format!("{suggestion}it has {all}")))
-}
-
-fn check_range(
-    inputs: &Inputs<'_>,
-    channel: &str,
-    material: &Material,
-    format: MapFormat,
-    ranges: &BTreeMap<String, [f64; 2]>,
-) -> Result<(), Failure> {
-    let is_ratio =
-        channel == "normal" || (channel != "height" && STANDARD_CHANNELS.contains(&channel));
-    let is_number = material
-        .channels
-        .get(channel)
-        .is_some_and(|field| field.width() == 1);
-    let is_whole = !format.sample_type().is_float();
-    if !is_whole || !is_number || is_ratio {
-        return Ok(());
-    }
-    match ranges.get(channel) {
-        Some(range) => warn_of_ids(inputs, channel, format, *range),
-        None => return Err(refuse_unranged(channel, format)),
-    }
-    Ok(())
-}
-
-/// What is said of a channel of which nobody knows what is black and white.
-fn refuse_unranged(channel: &str, format: MapFormat) -> Failure {
-    let file = match format.file_type() {
-        FileType::Tiff => "a TIFF of whole samples",
-        FileType::Bmp => "a BMP",
-        _ => "a PNG",
-    };
-    let message = format!("{file} of `{channel}` needs to know which values are black and white");
-    let hint = match is_of_ids(channel) {
-        true => format!(
-            "ids are whole numbers: write `format: exr_float`, which holds them as they are, or `format: png16` with \
-             `ranges: [(channel: \"{channel}\", low: 0, high: 65535)]`"
-        ),
-        false => format!(
-            "add `ranges: [(channel: \"{channel}\", low: 0, high: 1)]` with its values, or write EXR"
-        ),
-    };
-    Failure::of_input("channels", message).with_hint(hint)
-}
-
-/// Whether a channel holds whole numbers that tell things apart, by its name.
-fn is_of_ids(channel: &str) -> bool {
-    channel == "id" || channel.ends_with("_id")
-}
-
-/// Warns of ids that whole samples would not tell apart.
-fn warn_of_ids(inputs: &Inputs<'_>, channel: &str, format: MapFormat, [low, high]: [f64; 2]) {
-    let steps = libm::exp2(8.0 * format.sample_type().bytes() as f64) - 1.0;
-    if is_of_ids(channel) && (high - low).abs() > steps {
-        let name = format.name();
-        inputs.warn(format!(
-            "`{channel}` from {low} to {high} does not fit into the {} values of {name}, so different ids look the same; \
-             write `format: exr_float`, or `png16` for ids up to 65535",
-            steps + 1.0
-        ));
-    }
-}
-
 /// Width and height of the piece: its own, or as stated.
 fn size(inputs: &Inputs<'_>, own: Option<[f64; 2]>) -> Result<[f64; 2], Failure> {
     let stated = inputs.get("size").map(|_| inputs.pair("size"));
@@ -282,6 +163,39 @@ fn size(inputs: &Inputs<'_>, own: Option<[f64; 2]>) -> Result<[f64; 2], Failure>
             let message = format!("the piece has a size of its own, {width} x {height} mm");
             Err(Failure::of_input("size", message).with_hint("remove `size`"))
         }
+    }
+}
+
+/// How far a number of periods may be from a whole one.
+const WHOLE: f64 = 1e-4;
+
+/// Warns if cells that repeat do not fit the piece a whole number of times. Less than a period is a look at a part.
+fn warn_of_seams(inputs: &Inputs<'_>, size: [f64; 2], channels: &[String], material: &Material) {
+    let shown = |channel: &String| match channel.as_str() {
+        "normal" => material.channels.get("height"),
+        name => material.channels.get(name),
+    };
+    let mut periods: Vec<[f64; 2]> = vec![];
+    for period in channels.iter().filter_map(shown).flat_map(Field::periods) {
+        if !periods.contains(&period) {
+            periods.push(period);
+        }
+    }
+    let does_not_meet = |[width, height]: &[f64; 2]| {
+        let times = [size[0] / width, size[1] / height];
+        let is_part = |times: &f64| *times > 1.0 - WHOLE && (times - times.round()).abs() > WHOLE;
+        times.iter().any(is_part)
+    };
+    for [width, height] in periods.into_iter().filter(does_not_meet) {
+        let fitting = [size[0] / width, size[1] / height].map(|times| times.floor().max(1.0));
+        inputs.warn(format!(
+            "the picture shows {} x {} mm of cells that repeat every {width} x {height} mm, so it has a seam where it is tiled; \
+             {} x {} mm would have none",
+            size[0],
+            size[1],
+            fitting[0] * width,
+            fitting[1] * height
+        ));
     }
 }
 

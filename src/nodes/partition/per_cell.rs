@@ -59,6 +59,7 @@ pub static KIND: Kind = Kind {
             "Where in the material a cell's centre lies; as it is at the centre.",
         )
         .per_point()
+        .range(-1e9, 1e9)
         .of(Domain::Plane)
         .default("(0, 0, 0)"),
         Input::new(

@@ -117,11 +117,12 @@ const PATTERNS: [&str; 9] = [
     "recursive",
 ];
 
-/// Most cells of one plot.
+/// Most cells.
 const MOST: f64 = 4e6;
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let plots = Plot::all(inputs)?;
+    check_count(inputs, &plots)?;
     let random = Random::new(build.seed, KIND.name, inputs.whole("seed"));
     let laid = |plot: &Plot| {
         let stream = random.of_item(plot.parent.unwrap_or_default());
@@ -201,6 +202,21 @@ fn board(inputs: &Inputs<'_>, window: &Window) -> Result<DVec2, Failure> {
     Ok(DVec2::new(length, width))
 }
 
+/// Refuses more boards than one partition may have, over all plots.
+fn check_count(inputs: &Inputs<'_>, plots: &[Plot]) -> Result<(), Failure> {
+    let width = inputs.number("width");
+    let length = inputs
+        .get("length")
+        .map_or(width, |_| inputs.number("length"));
+    let area: f64 = plots.iter().map(Plot::area).sum();
+    let count = area / (length * width);
+    if count <= MOST {
+        return Ok(());
+    }
+    let message = format!("expected at most {MOST} cells, found about {count:.0}");
+    Err(Failure::of_input("width", message).with_hint("choose larger cells"))
+}
+
 /// Lays the pattern over a window.
 fn lay(
     inputs: &Inputs<'_>,
@@ -223,7 +239,7 @@ fn lay(
         "fan" => {
             let lane = inputs.get("lane");
             let lane = lane.map_or(12.0 * board.x, |_| inputs.number("lane"));
-            Ok(fan::lay(window, board, lane, inputs.number("rise"), plot))
+            fan::lay(window, board, lane, inputs.number("rise"), plot)
         }
         "hexagons" => Ok(hexagons::lay(window, board.y)),
         _ => {

@@ -131,6 +131,7 @@ const OFF: f64 = 1e-4;
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let layout = Layout::read(inputs)?;
     let plots = Plot::all(inputs)?;
+    layout.check_count(&plots)?;
     let density = Density::read(inputs, build);
     let random = Random::new(build.seed, KIND.name, inputs.whole("seed"));
     let split = |plot: &Plot, seeds: Seeds| split(plot, seeds, &layout, &density, build);

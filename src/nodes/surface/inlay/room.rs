@@ -21,7 +21,7 @@ pub(super) fn warn_of_room(inputs: &Inputs<'_>, cells: &Partition) {
 fn warn_of_gap(inputs: &Inputs<'_>, cells: &Partition) {
     let gap = inputs.number("gap");
     if gap <= 0.0 {
-        return;
+        return warn_of_chamfer(inputs, cells);
     }
     let all = cells.len();
     let gone: Vec<usize> = (0..all)
@@ -29,7 +29,7 @@ fn warn_of_gap(inputs: &Inputs<'_>, cells: &Partition) {
         .filter(|cell| !leaves_any(cells, *cell, 0.5 * gap))
         .collect();
     if gone.is_empty() {
-        return;
+        return warn_of_chamfer(inputs, cells);
     }
     let widest = |narrowest: f64, cell: &usize| match leaves_any(cells, *cell, 0.5 * narrowest) {
         true => narrowest,
@@ -45,6 +45,19 @@ fn warn_of_gap(inputs: &Inputs<'_>, cells: &Partition) {
     inputs.warn(format!(
         "{lost}: {reason}; {whole} has room for a `gap` below {fitting} mm"
     ));
+}
+
+/// Warns if chamfers leave nothing of any face.
+fn warn_of_chamfer(inputs: &Inputs<'_>, cells: &Partition) {
+    let chamfer = inputs.number("chamfer");
+    let off = 0.5 * inputs.number("gap") + chamfer;
+    let mut all = 0..cells.len();
+    if chamfer > 0.0 && !all.any(|cell| leaves_any(cells, cell, off)) {
+        inputs.warn(format!(
+            "the chamfer of {chamfer} mm leaves nothing of the face of what is let in: it stays below its level; make the \
+             chamfer narrower"
+        ));
+    }
 }
 
 /// Whether something of a cell is left if its edges move inwards.
