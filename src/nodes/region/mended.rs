@@ -45,7 +45,7 @@ pub(super) fn mended(
             Nothing::Corners(found) => {
                 format!("expected at least 3 different corners of {ring}, found {found}")
             }
-            Nothing::Area if hole.is_none() && has_area(&drawn[number].outline) => {
+            Nothing::Area if hole.is_none() && is_only_in_holes(&drawn[number]) => {
                 format!("the holes of {ring} leave nothing of it")
             }
             Nothing::Area => format!("{ring} encloses no area"),
@@ -56,8 +56,9 @@ pub(super) fn mended(
     Ok(region)
 }
 
-fn has_area(ring: &[DVec2]) -> bool {
-    doubled_area(ring) != 0.0
+/// Whether it is holes that leave nothing of a polygon.
+fn is_only_in_holes(polygon: &Polygon) -> bool {
+    !polygon.holes.is_empty() && doubled_area(&polygon.outline) != 0.0
 }
 
 fn is_too_far(corner: DVec2) -> bool {
