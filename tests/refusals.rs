@@ -65,6 +65,38 @@ const REFUSED: &[(&str, &str)] = &[
         r#""it": direction_field(guides: [(points: [(3, 3), (3, 3)])])"#,
         "nothing says where the direction comes from",
     ),
+    (
+        r#""it": split_cells(size: (100, 100), pattern: fan, length: 10, width: 1e8)"#,
+        "courses are 100000000.000 mm wide, which is more than the arcs of lanes",
+    ),
+    (
+        r#""it": split_cells(within: "cells", pattern: rows, length: 0.02, width: 0.02)"#,
+        "expected at most 4000000 cells, found about 20000000",
+    ),
+    (
+        r#""it": voronoi_split(within: "cells", count: 4000000)"#,
+        "expected at most 4000000 cells, found about 176000000",
+    ),
+    (
+        r#""it": voronoi_split(size: (100, 100), cell_size: 20, density: "= 0 mm / (0 * at.u)")"#,
+        "expected finite numbers, found NaN at",
+    ),
+    (
+        r#""it": square_packing(size: (100, 100), stone: 10, scale: "= -1 * at.u / 1 mm")"#,
+        "the factor is nowhere above 0",
+    ),
+    (
+        r#""it": square_packing(size: (100, 100), stone: 10, scale: "= 0 mm / (0 * at.u)")"#,
+        "expected finite numbers, found NaN at",
+    ),
+    (
+        r#""it": square_packing(size: (100, 100), stone: 10, direction: (0, 0, 5))"#,
+        "the direction has no length in the plane anywhere",
+    ),
+    (
+        r#""it": region(outlines: [(outline: [(0, 0), (9, 0), (0, 9)], holes: [[(-1, -1), (60, -1), (60, 60), (-1, 60)]])])"#,
+        "the holes of outline 1 leave nothing of it",
+    ),
 ];
 
 #[test]
@@ -86,7 +118,39 @@ const WARNED: &[(&str, &str)] = &[
         "far": region_shape(size: (10, 10), at: (300, 0)), "it": inlay(ground: "board", of: "board", region: "far")"#,
         "nothing is let in: the outline lies beside the ground",
     ),
+    (
+        r#""shape": region_shape(size: (70, 30), at: (15, 15)), "it": inlay(ground: "oak", of: "oak", region: "shape", gap: 32)"#,
+        "nothing of the inlay is left: the gap of 32 mm takes 16 mm off every side; it has room for a `gap` below 30 mm",
+    ),
+    (
+        r#""squares": split_cells(size: (100, 100), pattern: grid, length: 40, width: 20), "it": inlay(ground: "oak", of: "oak", cells: "squares", gap: 20.5)"#,
+        "nothing of the inlay is left: the gap of 20.5 mm takes 10.25 mm off every side; every cell has room for a `gap` below 20 mm",
+    ),
+    (
+        r#""it": inlay(ground: "oak", of: "oak", cells: "cells", gap: 0.1, chamfer: 9)"#,
+        "the chamfer of 9 mm leaves nothing of the face of what is let in",
+    ),
+    (
+        r#""cut": inset_cells(of: "cells", joint: "= 1 mm - 0.5 * at.u"), "it": cell_fields(cells: "cut")"#,
+        "the joint is below 0 at 231 of 239 edges, down to -49 mm: cells do not move there",
+    ),
+    (
+        r#""rows": split_cells(period: (100, 100), pattern: rows, length: 21, width: 9.8), "it": cell_fields(cells: "rows")"#,
+        "the pattern was made 4.76 % shorter and 2.04 % wider, so that it closes",
+    ),
+    (
+        r#""board": slice_cut(of: "oak", origin: (0, 0, 0), across: (1, 0, 0), along: (0, 0, 1), size: (40, 40)),
+        "shape": region_shape(size: (70, 30), at: (15, 5)), "it": inlay(ground: "oak", of: "board", region: "shape")"#,
+        "the piece that is let in ends 45 mm before its outline does: it is 40 x 40 mm, and the outline reaches (85.0, 35.0) mm",
+    ),
 ];
+
+#[test]
+fn an_inlay_with_room_is_not_warned_of() {
+    let inlay = r#""board": slice_cut(of: "oak", origin: (0, 0, 0), across: (1, 0, 0), along: (0, 0, 1), size: (100, 80)),
+        "it": inlay(ground: "board", of: "board", cells: "cells", gap: 7)"#;
+    assert_eq!(said(inlay), (String::new(), vec![]));
+}
 
 #[test]
 fn what_is_likely_a_mistake_is_warned_of() {

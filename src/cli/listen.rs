@@ -5,7 +5,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-use yosegi::engine::{Event, Listener};
+use yosegi::engine::{Event, Listener, Spot};
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
@@ -73,13 +73,20 @@ impl Listen {
     fn warn_of_faults(&self, faults: &Faults<'_>) {
         let (path, channel) = (faults.path.display(), faults.channel);
         if faults.not_finite > 0 {
-            let count = faults.not_finite;
-            self.warn(&format!("{count} samples of {path} are not finite"));
+            let first = faults.first.map_or(String::new(), |spot| {
+                let ([x, y], [u, v]) = (spot.pixel, spot.place);
+                format!(", the first at pixel ({x}, {y}) from the upper left, ({u:.3}, {v:.3}) mm from the lower left")
+            });
+            let samples = samples(faults.not_finite, ["is", "are"]);
+            self.warn(&format!(
+                "{path}: {samples} not finite in the channel `{channel}`{first}; look for a division by 0 in what is \
+                 linked to it"
+            ));
         }
         if faults.clamped > 0 {
-            let count = faults.clamped;
+            let samples = samples(faults.clamped, ["was", "were"]);
             self.warn(&format!(
-                "{count} samples of {path} were clamped; widen the range of `{channel}`, or write EXR"
+                "{path}: {samples} clamped; widen the range of `{channel}`, or write EXR"
             ));
         }
     }
@@ -101,8 +108,15 @@ impl Listen {
                 "{} is from an earlier run: `{output}` no longer writes it",
                 path.display()
             )),
-            Event::Warning { node, message } => {
-                self.warn(&format!("node `{node}`: {message}"));
+            Event::Warning {
+                node,
+                file,
+                line,
+                column,
+                message,
+            } => {
+                let file = file.display();
+                self.warn(&format!("{file}:{line}:{column}: node `{node}`: {message}"));
             }
             Event::CacheVerified { compared } => self.bar.suspend(|| {
                 report::note(&format!(
@@ -122,11 +136,20 @@ impl Listen {
     }
 }
 
+/// So many samples, with the verb that fits the number.
+fn samples(count: u64, [one, many]: [&str; 2]) -> String {
+    match count {
+        1 => format!("1 sample {one}"),
+        _ => format!("{count} samples {many}"),
+    }
+}
+
 /// What is wrong with the samples of a map.
 struct Faults<'a> {
     channel: &'a str,
     path: &'a Path,
     not_finite: u64,
+    first: Option<Spot>,
     clamped: u64,
 }
 
@@ -137,6 +160,7 @@ fn faults(event: &Event) -> Option<Faults<'_>> {
             channel,
             path,
             not_finite,
+            first_not_finite,
             clamped,
             ..
         }
@@ -144,6 +168,7 @@ fn faults(event: &Event) -> Option<Faults<'_>> {
             channel,
             path,
             not_finite,
+            first_not_finite,
             clamped,
             ..
         }
@@ -151,12 +176,14 @@ fn faults(event: &Event) -> Option<Faults<'_>> {
             channel,
             path,
             not_finite,
+            first_not_finite,
             clamped,
             ..
         } => Some(Faults {
             channel,
             path,
             not_finite: *not_finite,
+            first: *first_not_finite,
             clamped: *clamped,
         }),
         _ => None,

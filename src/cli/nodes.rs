@@ -139,13 +139,48 @@ fn describe(kind: &Kind, file: Option<&Path>) -> String {
     if !kind.source.is_empty() {
         text += &format!("\nSource\n  {}\n", kind.source);
     }
-    if !kind.example.is_empty() {
-        text += "\nExample\n";
-    }
-    for line in kind.example.lines() {
+    // A compound has none in its file: its use is shown with what has to be stated.
+    let example = match kind.example {
+        "" => use_of(kind),
+        example => example.to_owned(),
+    };
+    text += "\nExample\n";
+    for line in example.lines() {
         text += &format!("  {line}\n");
     }
     text.trim_end().to_owned()
+}
+
+/// A node of a kind with the inputs that have no default, each called after what it takes.
+fn use_of(kind: &Kind) -> String {
+    let required = kind
+        .inputs
+        .iter()
+        .filter(|input| matches!(input.presence, Presence::Required));
+    let stated: Vec<String> = required
+        .map(|input| format!("{}: {}", input.name, stand_in(input)))
+        .collect();
+    let ports: Vec<String> = kind
+        .outputs
+        .iter()
+        .map(|output| format!("\"example.{}\"", output.name))
+        .collect();
+    let (node, ports) = (
+        format!("{}({})", kind.name, stated.join(", ")),
+        ports.join(", "),
+    );
+    format!("\"example\": {node},\nLinks to it: {ports}; \"example\" is the first")
+}
+
+/// A value for an input: a literal where a number or a colour is stated, else a link to a node of the input's name.
+fn stand_in(input: &Input) -> String {
+    match (input.value_type, input.varies) {
+        (Type::Number(_) | Type::Whole, Varies::Constant) => {
+            input.range.map_or(1.0, |(low, _)| low.max(0.0)).to_string()
+        }
+        (Type::Colour, _) => "\"#c8a06e\"".to_owned(),
+        _ => format!("\"{}\"", input.name),
+    }
 }
 
 fn describe_input(text: &mut String, input: &Input, indent: usize) {

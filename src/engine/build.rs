@@ -1,6 +1,6 @@
 //! Builds nodes in parallel, each as soon as the ones it reads are there.
 
-use super::event::{Event, Listener};
+use super::event::{self, Event, Listener};
 use super::memory::{Memory, Structure};
 use super::plan::Plan;
 use super::progress::Quiet;
@@ -220,10 +220,7 @@ impl Builder<'_> {
             make()?
         };
         for message in &built.warnings {
-            self.listener.hear(Event::Warning {
-                node: node.name.to_string(),
-                message: message.clone(),
-            });
+            self.listener.hear(event::warning(node, message));
         }
         Ok(Some(built))
     }

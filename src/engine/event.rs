@@ -1,7 +1,9 @@
 //! What a run reports while it goes on: progress bars, `--json`, tests and `why` read the same events.
 
 use crate::cancel::Cancel;
-use serde::Serialize;
+use crate::diagnostics::Position;
+use crate::graph::Node;
+use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::PathBuf;
 
@@ -13,6 +15,15 @@ pub enum From {
     Memory,
     /// The store on disk.
     Disk,
+}
+
+/// A pixel of a map, and what it lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spot {
+    /// Its column and its row, counted from 0 at the upper left corner of the picture.
+    pub pixel: [u32; 2],
+    /// The place of its middle in mm, to the right and upwards from the lower left corner of the piece.
+    pub place: [f32; 2],
 }
 
 /// One thing that happened during a run.
@@ -78,6 +89,8 @@ pub enum Event {
         path: PathBuf,
         /// Samples that were not finite: a PNG holds 0 or the nearest it can.
         not_finite: u64,
+        /// The first of them.
+        first_not_finite: Option<Spot>,
         /// Samples outside the range that the format can hold.
         clamped: u64,
     },
@@ -91,6 +104,8 @@ pub enum Event {
         path: PathBuf,
         /// Samples that were not finite: a PNG holds 0 or the nearest it can.
         not_finite: u64,
+        /// The first of them.
+        first_not_finite: Option<Spot>,
         /// Samples outside the range that the format can hold.
         clamped: u64,
     },
@@ -104,6 +119,8 @@ pub enum Event {
         path: PathBuf,
         /// Samples that were not finite: a PNG holds 0 or the nearest it can.
         not_finite: u64,
+        /// The first of them.
+        first_not_finite: Option<Spot>,
         /// Samples outside the range that the format can hold.
         clamped: u64,
     },
@@ -129,6 +146,12 @@ pub enum Event {
     Warning {
         /// The node.
         node: String,
+        /// The recipe.
+        file: PathBuf,
+        /// The line of the recipe with the name of the node, or of the compound's use that holds it, counted from 1.
+        line: usize,
+        /// The character in the line, counted from 1.
+        column: usize,
         /// What it says.
         message: String,
     },
@@ -144,6 +167,23 @@ pub enum Event {
     },
     /// The run was stopped before its end.
     Cancelled,
+}
+
+/// What a node says that the recipe's author should know.
+pub(super) fn warning(node: &Node, message: &str) -> Event {
+    let uses = node.origin.uses.as_deref();
+    let (source, span) = match uses.and_then(|inner| inner.chain().last()) {
+        Some(outermost) => (&outermost.source, &outermost.span),
+        None => (&node.origin.source, &node.span),
+    };
+    let Position { line, column } = source.position(span.start);
+    Event::Warning {
+        node: node.name.to_string(),
+        file: source.path.clone(),
+        line,
+        column,
+        message: message.to_owned(),
+    }
 }
 
 /// Says that the store cannot be used, unless that comes of a cancelled run.

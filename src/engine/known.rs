@@ -1,7 +1,7 @@
 //! What the store knows of an output: which maps it leads to, and whether they can be put in place.
 
 use super::build::Built;
-use super::event::Event;
+use super::event::{self, Event};
 use super::plan::{Plan, ancestors};
 use super::render::{Output, Render, WantedMap};
 use super::store::{Family, MapRecord, Store};
@@ -143,12 +143,14 @@ impl Output<'_> {
     fn event(&self, known: &KnownMap) -> Event {
         let (output, channel) = (self.name().to_owned(), known.map.channel.clone());
         let (path, [not_finite, clamped]) = (known.path.clone(), known.record.faults);
+        let first_not_finite = known.record.first_not_finite;
         if known.is_there {
             Event::MapUpToDate {
                 output,
                 channel,
                 path,
                 not_finite,
+                first_not_finite,
                 clamped,
             }
         } else {
@@ -157,6 +159,7 @@ impl Output<'_> {
                 channel,
                 path,
                 not_finite,
+                first_not_finite,
                 clamped,
             }
         }
@@ -192,10 +195,8 @@ pub(super) fn repeat_warnings<'k>(
             continue;
         };
         if !built.has(*node) && repeated.insert((key, message)) {
-            request.listener.hear(Event::Warning {
-                node: request.graph.nodes[*node].name.to_string(),
-                message: message.clone(),
-            });
+            let node = &request.graph.nodes[*node];
+            request.listener.hear(event::warning(node, message));
         }
     }
 }

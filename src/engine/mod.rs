@@ -27,7 +27,7 @@ mod why;
 mod write;
 
 pub use crate::cancel::Cancel;
-pub use event::{Event, From as ReusedFrom, Listener};
+pub use event::{Event, From as ReusedFrom, Listener, Spot};
 pub use pace::Pace;
 pub use render::{Render, RenderedMap};
 pub use sample::SampledField;

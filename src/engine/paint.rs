@@ -3,7 +3,7 @@
 //! Tiles are computed in windows of a few bands. While one window is computed, the rows of the window
 //! before are compressed and written.
 
-use super::event::{Event, Listener};
+use super::event::{Event, Listener, Spot};
 use super::progress::Meter;
 use super::{Cancel, Options, RunError};
 use crate::field::{PixelGrid, Program, RunContext, Samples, Scratch, Target, Work};
@@ -22,6 +22,8 @@ pub(super) struct Sheet {
     pub(super) encoder: Encoder,
     pub(super) writer: Box<dyn MapWriter>,
     pub(super) faults: Faults,
+    /// Where the first sample is that is not finite.
+    pub(super) first_not_finite: Option<Spot>,
 }
 
 /// What painting needs besides the sheets.
@@ -86,6 +88,8 @@ struct Painted {
     tile: Tile,
     rows: Vec<Vec<u8>>,
     faults: Vec<Faults>,
+    /// For every sheet where the first sample is that is not finite.
+    firsts: Vec<Option<Spot>>,
     work: BTreeMap<Arc<str>, Work>,
 }
 
@@ -188,12 +192,14 @@ impl Painter<'_> {
             tile,
             rows: vec![],
             faults: vec![],
+            firsts: vec![],
             work: scratch.take_work(),
         };
         for (output, encoder) in encoders.iter().enumerate() {
             let row_bytes = width * encoder.pixel_bytes();
             let mut rows = vec![0; row_bytes * height];
             let mut faults = Faults::default();
+            let mut first = None;
             for (row, bytes) in rows.chunks_exact_mut(row_bytes).enumerate() {
                 let start = (row + margin) * stride + margin;
                 let columns = program.columns(scratch, output);
@@ -202,12 +208,35 @@ impl Painter<'_> {
                     .map(|column| &column[start..start + width])
                     .collect();
                 faults += encoder.encode(&columns, bytes);
+                if faults.non_finite > 0 && first.is_none() {
+                    first = self
+                        .first_not_finite(&columns, [tile.corner[0], tile.corner[1] + row as u32]);
+                }
             }
+            painted.firsts.push(first);
             painted.rows.push(rows);
             painted.faults.push(faults);
         }
         Some(painted)
     }
+
+    /// The first pixel of a row, which begins at `corner`, with a sample that is not finite.
+    fn first_not_finite(&self, columns: &[&[f32]], corner: [u32; 2]) -> Option<Spot> {
+        let first = |column: &&[f32]| column.iter().position(|value| !value.is_finite());
+        let across = columns.iter().filter_map(first).min()?;
+        let pixel = [corner[0] + across as u32, corner[1]];
+        let [x, y] = pixel.map(|count| f64::from(count) + 0.5);
+        let [mut u, mut v, mut w] = [[0.0]; 3];
+        self.target.write_row(x, y, 1.0, [&mut u, &mut v, &mut w]);
+        let place = [u[0], v[0]];
+        Some(Spot { pixel, place })
+    }
+}
+
+/// The upper one of two spots, or the left one of a row.
+fn upper(one: Option<Spot>, other: Option<Spot>) -> Option<Spot> {
+    let found = one.into_iter().chain(other);
+    found.min_by_key(|spot| [spot.pixel[1], spot.pixel[0]])
 }
 
 /// Why painting stopped.
@@ -252,8 +281,11 @@ impl Tally {
                 let mut rows = Vec::with_capacity(parts.sum());
                 for band in &window {
                     append_rows(&mut rows, band, index, sheet.encoder.pixel_bytes());
-                    band.iter()
-                        .for_each(|painted| sheet.faults += painted.faults[index]);
+                    for painted in band {
+                        sheet.faults += painted.faults[index];
+                        sheet.first_not_finite =
+                            upper(sheet.first_not_finite, painted.firsts[index]);
+                    }
                 }
                 sheet.writer.write_rows(&rows)
             })?;

@@ -148,6 +148,7 @@ impl Output<'_> {
             encoder: Encoder::new(kind, request.format, range),
             writer: writer.map_err(not_written)?,
             faults: Faults::default(),
+            first_not_finite: None,
         }];
         // Of the picture itself all is told that has to be told.
         let nobody = |_: Event| {};

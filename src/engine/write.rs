@@ -1,6 +1,6 @@
 //! Writes the maps of an output that are missing.
 
-use super::event::Event;
+use super::event::{Event, Spot};
 use super::paint::{Painter, Sheet};
 use super::progress::Meter;
 use super::render::{Output, WantedMap};
@@ -19,6 +19,8 @@ use std::path::Path;
 pub(super) struct Written {
     /// What is wrong with its samples.
     pub(super) faults: Faults,
+    /// Where the first sample is that is not finite.
+    pub(super) first_not_finite: Option<Spot>,
     /// Its hash and size, if there is a store to remember them.
     pub(super) contents: Contents,
 }
@@ -31,6 +33,7 @@ impl Written {
             faults: [self.faults.non_finite, self.faults.clamped],
             file,
             bytes,
+            first_not_finite: self.first_not_finite,
         })
     }
 }
@@ -67,11 +70,13 @@ impl Output<'_> {
                 channel: map.channel.clone(),
                 path: path.clone(),
                 not_finite: 0,
+                first_not_finite: None,
                 clamped: 0,
             });
         })?;
         Ok(Written {
             faults: Faults::default(),
+            first_not_finite: None,
             contents,
         })
     }
@@ -113,26 +118,35 @@ impl Output<'_> {
             meter,
         };
         painter.paint(&mut sheets)?;
-        let faults: Vec<Faults> = sheets.iter().map(|sheet| sheet.faults).collect();
+        let wrong = |sheet: &Sheet| (sheet.faults, sheet.first_not_finite);
+        let wrong: Vec<_> = sheets.iter().map(wrong).collect();
         self.finish(sheets, missing)?;
-        let written = faults.into_iter().zip(contents);
+        let written = wrong.into_iter().zip(contents);
         Ok(written
-            .map(|(faults, contents)| Written { faults, contents })
+            .map(|((faults, first_not_finite), contents)| Written {
+                faults,
+                first_not_finite,
+                contents,
+            })
             .collect())
     }
 
     /// Puts the maps in their places, all at the same time, since the disk takes its time over each.
     fn finish(&self, sheets: Vec<Sheet>, maps: &[&WantedMap]) -> Result<(), RunError> {
-        let finish = |sheet: Sheet| (sheet.faults, sheet.writer.finish());
-        let finished: Vec<(Faults, io::Result<()>)> = sheets.into_par_iter().map(finish).collect();
+        let finish = |sheet: Sheet| {
+            let wrong = (sheet.faults, sheet.first_not_finite);
+            (wrong, sheet.writer.finish())
+        };
+        let finished: Vec<_> = sheets.into_par_iter().map(finish).collect();
         let mut result = Ok(());
-        for ((faults, written), map) in finished.into_iter().zip(maps) {
+        for (((faults, first_not_finite), written), map) in finished.into_iter().zip(maps) {
             match written {
                 Ok(()) => self.request.listener.hear(Event::MapWritten {
                     output: self.name().to_owned(),
                     channel: map.channel.clone(),
                     path: self.path(map),
                     not_finite: faults.non_finite,
+                    first_not_finite,
                     clamped: faults.clamped,
                 }),
                 Err(error) => result = result.and(Err(RunError::not_written(&error))),
@@ -162,6 +176,7 @@ impl Output<'_> {
             encoder: Encoder::new(kind, maps.format, range),
             writer: self.writer(&self.path(map), &request, contents)?,
             faults: Faults::default(),
+            first_not_finite: None,
         })
     }
 

@@ -70,6 +70,11 @@ pub trait Kernel: Send + Sync + Debug {
         None
     }
 
+    /// Width and height in mm after which its columns repeat if it reads the position on a plane as it is.
+    fn period(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Whether the mean over a supersampled pixel takes in samples of other charts: so where a picture shows what lies
     /// side by side in it, and not a piece.
     fn mixes_charts(&self) -> bool {

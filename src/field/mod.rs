@@ -11,6 +11,7 @@ mod given;
 mod guards;
 mod kernel;
 mod lost;
+mod periods;
 mod places;
 mod points;
 mod run;

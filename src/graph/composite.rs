@@ -32,6 +32,16 @@ impl Tree {
     }
 }
 
+/// Whether items are lists of numbers: where lists of points are wanted, brackets are missing.
+fn is_flat(items: &[Tree]) -> bool {
+    let is_number = |part: &Tree| matches!(part.shape, Shape::Number);
+    let is_point = |item: &Tree| {
+        item.items()
+            .is_some_and(|parts| !parts.is_empty() && parts.iter().all(is_number))
+    };
+    !items.is_empty() && items.iter().all(is_point)
+}
+
 impl Reader<'_> {
     /// As many numbers as are asked for.
     pub(super) fn numbers<const N: usize>(
@@ -98,7 +108,13 @@ impl Reader<'_> {
                 message,
                 span,
                 "not a colour",
-                |error| error.expected("a colour such as `#c8a06e`", found),
+                |error| {
+                    let error = error.expected("a colour such as `#c8a06e`", found);
+                    match six_digits(&text.value) {
+                        Some(digits) => error.hint(format!("write all six digits: `\"{digits}\"`")),
+                        None => error,
+                    }
+                },
             );
         };
         Some(colour)
@@ -109,6 +125,9 @@ impl Reader<'_> {
         let Some(items) = tree.items() else {
             return self.mismatch(tree, slot);
         };
+        if matches!(item, Type::List(Type::Pair(_) | Type::Vector(_))) && is_flat(items) {
+            return self.mismatch(tree, slot);
+        }
         let values: Vec<_> = items
             .iter()
             .map(|tree| self.literal(tree, slot.of(item)))
@@ -257,6 +276,18 @@ fn hexadecimal_colour(text: &str) -> Option<[f64; 3]> {
     let number = u32::from_str_radix(digits, 16).ok()?;
     let [_, bytes @ ..] = number.to_be_bytes();
     Some(bytes.map(|byte| from_srgb(f64::from(byte) / 255.0)))
+}
+
+/// What stylesheets write as `#rgb` with all its digits.
+fn six_digits(text: &str) -> Option<String> {
+    let digits = text.trim_start_matches('#');
+    let is_short = digits.len() == 3 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let both = |digit: char| [digit, digit];
+    is_short.then(|| {
+        std::iter::once('#')
+            .chain(digits.chars().flat_map(both))
+            .collect()
+    })
 }
 
 /// The value of a default that a kind declares.

@@ -2,10 +2,11 @@
 
 use super::compound::Layout;
 use super::described::described_unit;
+use super::instead::instead_of_text;
 use super::literal::{Reader, Slot};
 use super::names::{look_alike, shown};
 use super::{Link, Source};
-use crate::diagnostics::{Code, Span, nearest};
+use crate::diagnostics::{Code, Diagnostic, Span, nearest};
 use crate::node::{Input, Kind, Output, Varies};
 use crate::value::{Type, Unit};
 use petgraph::graph::NodeIndex;
@@ -47,12 +48,17 @@ pub(super) struct Linker<'c, 's> {
 impl Linker<'_, '_> {
     /// The output that `node` or `node.output` names.
     pub(super) fn find(&mut self, text: &str, span: Span) -> Option<Found> {
+        self.find_for(text, span, None)
+    }
+
+    /// The same, for the input that it is linked to.
+    fn find_for(&mut self, text: &str, span: Span, input: Option<&Input>) -> Option<Found> {
         let (node, output) = match text.split_once('.') {
             Some((node, output)) => (node, Some(output)),
             None => (text, None),
         };
         let Some(slot) = self.scope.layout.slot(node) else {
-            return self.refuse_unknown_node(text, node, span);
+            return self.refuse_unknown_node(text, node, span, input);
         };
         let index = |offset| NodeIndex::new(self.scope.base + offset);
         if slot.inside.is_none() && index(slot.offset) == self.index {
@@ -82,7 +88,7 @@ impl Linker<'_, '_> {
 
     /// The link, if the input takes what it leads to.
     pub(super) fn link(&mut self, text: &str, span: Span, input: &Input) -> Option<Source> {
-        let found = self.find(text, span.clone())?;
+        let found = self.find_for(text, span.clone(), Some(input))?;
         self.accept(&found, text, span.clone(), input)?;
         self.constant(&found, text, span, input)?;
         Some(Source::Link(found.link))
@@ -201,10 +207,18 @@ impl Linker<'_, '_> {
         )
     }
 
-    fn refuse_unknown_node<T>(&mut self, text: &str, node: &str, span: Span) -> Option<T> {
+    fn refuse_unknown_node<T>(
+        &mut self,
+        text: &str,
+        node: &str,
+        span: Span,
+        input: Option<&Input>,
+    ) -> Option<T> {
         let message = format!("there is no node {}", shown(node));
         let layout = self.scope.layout;
         let names = nearest(node, layout.names.iter().copied());
+        let written = input.filter(|_| names.is_empty());
+        let instead = written.and_then(|input| instead_of_text(text, input.name, input.value_type));
         let is_output = layout.output_names.contains(&node);
         let is_number = text.parse::<f64>().is_ok();
         let label = look_alike(node, "no node has this name");
@@ -216,7 +230,7 @@ impl Linker<'_, '_> {
                         error.hint("it is an output of the recipe, and links lead to nodes")
                     }
                     (_, true) => error.hint("write numbers without quotes"),
-                    _ => error,
+                    _ => instead.into_iter().fold(error, Diagnostic::hint),
                 }
             })
     }

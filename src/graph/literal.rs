@@ -1,6 +1,7 @@
 //! Literals: values that a recipe writes out, read as the type of their input.
 
 use super::described::{described_number, described_range};
+use super::instead::instead;
 use super::names::shown;
 use super::number::{self, Written};
 use super::parameters::Parameters;
@@ -115,7 +116,11 @@ impl<'c> Reader<'c> {
             message,
             tree.span.clone(),
             label,
-            |error| error.expected(&expected, &found),
+            |error| {
+                let error = error.expected(&expected, &found);
+                let instead = instead(tree, slot);
+                instead.into_iter().fold(error, Diagnostic::hint)
+            },
         )
     }
 

@@ -14,6 +14,7 @@ mod described;
 mod domains;
 pub mod edit;
 mod file_name;
+mod instead;
 mod lexer;
 mod links;
 mod literal;

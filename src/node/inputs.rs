@@ -115,6 +115,29 @@ impl Build<'_> {
         Ok(values.swap_remove(0))
     }
 
+    /// The same of the field that is linked to input `name`, if all values are finite.
+    ///
+    /// # Errors
+    /// If one of them is not finite, or the run was cancelled.
+    pub fn sample_finite(
+        &self,
+        name: &'static str,
+        field: &Field,
+        points: &[DVec2],
+    ) -> Result<Vec<Vec<f32>>, Failure> {
+        let columns = self.sample(field, points)?;
+        for (point, value) in columns.iter().flat_map(|column| points.iter().zip(column)) {
+            if !value.is_finite() {
+                let [x, y] = point.to_array();
+                let message =
+                    format!("expected finite numbers, found {value} at ({x:.3}, {y:.3}) mm");
+                return Err(Failure::of_input(name, message)
+                    .with_hint("look for a division by 0 in what is linked here"));
+            }
+        }
+        Ok(columns)
+    }
+
     /// To be asked in loops that may take longer than some milliseconds.
     ///
     /// # Errors
@@ -195,17 +218,7 @@ impl<'a> Inputs<'a> {
         build: &Build<'_>,
         points: &[DVec2],
     ) -> Result<Vec<Vec<f32>>, Failure> {
-        let columns = build.sample(&self.field(name), points)?;
-        for (point, value) in columns.iter().flat_map(|column| points.iter().zip(column)) {
-            if !value.is_finite() {
-                let [x, y] = point.to_array();
-                let message =
-                    format!("expected finite numbers, found {value} at ({x:.3}, {y:.3}) mm");
-                return Err(Failure::of_input(name, message)
-                    .with_hint("look for a division by 0 in what is linked here"));
-            }
-        }
-        Ok(columns)
+        build.sample_finite(name, &self.field(name), points)
     }
 
     /// Takes memory for what is decoded from the file of input `input`: to be asked before decoding.

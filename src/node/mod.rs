@@ -6,10 +6,12 @@
 mod inputs;
 pub(crate) mod interned;
 mod ledger;
+mod words;
 
 pub(crate) use inputs::field_of;
 pub use inputs::{Build, Failure, Inputs, common_domain};
 pub(crate) use ledger::Budget;
+pub(crate) use words::{counted, stretched};
 
 use crate::value::{Domain, Type, Unit, Value};
 

@@ -3,7 +3,7 @@
 use super::*;
 use serde_json::json;
 use std::collections::BTreeSet;
-use yosegi::engine::{Event, ReusedFrom};
+use yosegi::engine::{Event, ReusedFrom, Spot};
 
 /// Every event with the JSON it becomes. An event that is missing here does not compile in `is_listed`.
 fn all_events() -> Vec<(Event, Value)> {
@@ -12,10 +12,14 @@ fn all_events() -> Vec<(Event, Value)> {
     let map = |event: &str| {
         json!({
             "event": event, "output": "board", "channel": "height", "path": "out/a.png",
-            "not_finite": 1, "clamped": 2,
+            "not_finite": 1, "first_not_finite": { "pixel": [5, 7], "place": [0.5, 2.25] }, "clamped": 2,
         })
     };
     let (not_finite, clamped) = (1, 2);
+    let first_not_finite = Some(Spot {
+        pixel: [5, 7],
+        place: [0.5, 2.25],
+    });
     vec![
         (
             Event::StructureBuilt {
@@ -75,6 +79,7 @@ fn all_events() -> Vec<(Event, Value)> {
                 channel: channel.clone(),
                 path: path.clone(),
                 not_finite,
+                first_not_finite,
                 clamped,
             },
             map("map_written"),
@@ -85,6 +90,7 @@ fn all_events() -> Vec<(Event, Value)> {
                 channel: channel.clone(),
                 path: path.clone(),
                 not_finite,
+                first_not_finite,
                 clamped,
             },
             map("map_up_to_date"),
@@ -95,6 +101,7 @@ fn all_events() -> Vec<(Event, Value)> {
                 channel: channel.clone(),
                 path: path.clone(),
                 not_finite,
+                first_not_finite,
                 clamped,
             },
             map("map_restored"),
@@ -118,9 +125,14 @@ fn all_events() -> Vec<(Event, Value)> {
         (
             Event::Warning {
                 node: text("tree"),
+                file: "recipe.ron".into(),
+                line: 3,
+                column: 9,
                 message: text("cut"),
             },
-            json!({ "event": "warning", "node": "tree", "message": "cut" }),
+            json!({
+                "event": "warning", "node": "tree", "file": "recipe.ron", "line": 3, "column": 9, "message": "cut",
+            }),
         ),
         (
             Event::StoreFailed {

@@ -187,7 +187,7 @@ fn outputs_come_once_and_in_the_order_of_the_recipe() {
 
 #[test]
 fn a_map_that_is_there_already_is_warned_of_again() {
-    let place = Place::new(
+    warned_of_again(
         r##"(
             nodes: {
                 "wood": material(base_color: "#c8a06e", height: 3),
@@ -198,16 +198,78 @@ fn a_map_that_is_there_already_is_warned_of_again() {
                 ranges: [(channel: "height", low: 0, high: 1)],
             ) },
         )"##,
+        "board_height.png: 12 samples were clamped; widen the range of `height`, or write EXR",
     );
+    warned_of_again(
+        r##"(
+            nodes: {
+                "at": position(),
+                "wood": material(base_color: "#c8a06e", height: "= 1 mm * 1 mm / max(2.2 mm - at.u, 0 mm)"),
+            },
+            outputs: { "board": maps(of: "wood", size: (4, 3), pixels: (4, 3), channels: [height], format: exr_float) },
+        )"##,
+        "board_height.exr: 6 samples are not finite in the channel `height`, the first at pixel (2, 0) from the upper left, \
+         (2.500, 2.500) mm from the lower left; look for a division by 0 in what is linked to it",
+    );
+}
+
+/// A map is written, found, and put back from the store, each time with the same warning.
+fn warned_of_again(recipe: &str, expected: &str) {
+    let place = Place::new(recipe);
     let first = stderr(&place.render(&[]));
-    assert!(
-        first.contains("12 samples") && first.contains("were clamped"),
-        "{first}"
-    );
+    assert!(first.contains(expected), "{first}");
     let second = format!("{first}recipe.ron is up to date\n");
     assert_eq!(stderr(&place.render(&[])), second);
-    fs::remove_file(place.folder.path().join("out/board_height.png")).unwrap();
+    fs::remove_dir_all(place.folder.path().join("out")).unwrap();
     assert_eq!(stderr(&place.render(&[])), first);
+}
+
+#[test]
+fn maps_that_cannot_show_what_they_ask_for_say_so() {
+    let said = |maps: &str| {
+        let place = Place::new(&format!(
+            r##"(
+            nodes: {{
+                "tile": split_cells(period: (40, 40), pattern: rows, length: 20, width: 10),
+                "found": cell_fields(cells: "tile"),
+                "wood": material(base_color: "#c8a06e", height: "= 1 mm * found.random", extras: {{"id": "found.id"}}),
+            }},
+            outputs: {{ "it": maps(of: "wood", pixels: (4, 4), {maps}) }},
+        )"##
+        ));
+        stderr(&place.render(&[]))
+    };
+    let cases = [
+        (
+            "size: (40, 40), channels: [base_color, base_colour, heigth]",
+            "the material has no channels `base_colour` and `heigth`",
+        ),
+        (
+            "size: (40, 40), channels: [base_color, base_colour, heigth]",
+            "did you mean `base_color`, `height`?",
+        ),
+        (
+            "size: (40, 40), channels: [id]",
+            "ids are whole numbers: write `format: exr_float`",
+        ),
+        (
+            "size: (40, 40), channels: [id], ranges: [(channel: \"id\", low: 0, high: 1000)]",
+            "`id` from 0 to 1000 does not fit into the 256 values of png8, so different ids look the same",
+        ),
+        (
+            "size: (100, 40), channels: [normal]",
+            "the picture shows 100 x 40 mm of cells that repeat every 40 x 40 mm, so it has a seam where it is tiled; \
+             80 x 40 mm would have none",
+        ),
+    ];
+    for (maps, expected) in cases {
+        assert!(said(maps).contains(expected), "{maps}: {}", said(maps));
+    }
+    let ids = "channels: [id], ranges: [(channel: \"id\", low: 0, high: 255)]";
+    for size in ["80, 40", "20, 20"] {
+        let told = said(&format!("size: ({size}), {ids}"));
+        assert_eq!(told, "");
+    }
 }
 
 /// The entry with another payload, as one writes it who knows how entries are made.

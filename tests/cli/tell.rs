@@ -158,6 +158,9 @@ fn nodes_lists_and_describes_kinds() {
     ] {
         assert!(growth.contains(part), "no `{part}` in\n{growth}");
     }
+    let compound = stdout(&place.call(&["nodes", "pavement"]));
+    let example = "Example\n  \"example\": pavement(cells: \"cells\"),\n";
+    assert!(compound.contains(example), "{compound}");
     for kind in kinds {
         assert_eq!(code(&place.call(&["nodes", kind])), 0, "{kind}");
     }

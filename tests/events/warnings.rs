@@ -29,14 +29,23 @@ const RECIPE: &str = r##"(
     },
 )"##;
 
-const WARNING: &str = "1 branches of branches are left out: a branch is straight and begins on the trunk; \
+const WARNING: &str = "1 branch of a branch is left out: a branch is straight and begins on the trunk; \
                        the first is in line 8";
 
 fn warnings(workshop: &Workshop, recipe: &str) -> Vec<String> {
     let run = workshop.render(recipe, &[], Cancel::new(), &|_| {});
     assert_eq!(run.result.unwrap().len(), 2);
     let told = |event: &Event| match event {
-        Event::Warning { node, message } => Some(format!("{node}: {message}")),
+        Event::Warning {
+            node,
+            file,
+            line,
+            column,
+            message,
+        } => {
+            let file = file.display();
+            Some(format!("{file}:{line}:{column}: {node}: {message}"))
+        }
         _ => None,
     };
     run.events.iter().filter_map(told).collect()
@@ -50,7 +59,7 @@ fn warnings_come_with_every_run() {
     };
     let workshop = Workshop::new("recipes", with_store());
     workshop.files.insert("recipes/tree.csv", TREE.as_bytes());
-    let expected = [format!("tree: {WARNING}")];
+    let expected = [format!("recipes/recipe.ron:3:9: tree: {WARNING}")];
     assert_eq!(warnings(&workshop, RECIPE), expected);
     // Nothing is built: the maps are in their place.
     assert_eq!(warnings(&workshop, RECIPE), expected);
@@ -60,7 +69,10 @@ fn warnings_come_with_every_run() {
     assert_eq!(warnings(&other, &edited), expected);
     // A new name, under which nothing runs again.
     let renamed = edited.replace("\"tree\"", "\"oak\"");
-    assert_eq!(warnings(&other, &renamed), [format!("oak: {WARNING}")]);
+    assert_eq!(
+        warnings(&other, &renamed),
+        [format!("recipes/recipe.ron:3:9: oak: {WARNING}")]
+    );
     // A file that gives no cause leaves none behind.
     workshop.files.insert(
         "recipes/tree.csv",

@@ -232,7 +232,7 @@ fn a_measured_tree_is_read_and_what_is_left_out_is_told() {
     for _ in 0..2 {
         let told = Mutex::new(vec![]);
         let listener = |event: Event| {
-            if let Event::Warning { node, message } = event {
+            if let Event::Warning { node, message, .. } = event {
                 told.lock().unwrap().push(format!("{node}: {message}"));
             }
         };

@@ -192,7 +192,7 @@ fn seeds_are_as_dense_as_a_field_says_before_and_after_relaxation() {
         ("count", Value::Whole(60)),
         ("density", Value::Number(0.0)),
     ]);
-    assert_eq!(none.unwrap_err().message, "the density is 0 everywhere");
+    assert_eq!(none.unwrap_err().message, "the density is nowhere above 0");
 }
 
 #[test]

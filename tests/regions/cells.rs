@@ -204,7 +204,7 @@ fn cells_that_vanish_are_counted() {
         \"example\": inset_cells(of: \"cells\", joint: 2)";
     assert_eq!(
         told(&[], nodes).unwrap(),
-        ["1 of 2 cells vanish between their joints"]
+        ["1 of 2 cells vanishes between their joints"]
     );
 }
 

@@ -124,11 +124,11 @@ fn files_that_are_no_areas_are_refused() {
     assert_eq!(message("<html/>"), "the file is no SVG: it is a `html`");
     assert_eq!(
         message("{}"),
-        "the file is no GeoJSON: an object without `type`"
+        "the file is no GeoJSON: its object has no `type`"
     );
     assert_eq!(
         message(r#"{"type":"Blob"}"#),
-        "`Blob` is no type of GeoJSON"
+        "its object has the type `Blob`, which is none of GeoJSON"
     );
     assert_eq!(
         message(r#"{"type":"Point","coordinates":[1,2]}"#),
@@ -136,7 +136,7 @@ fn files_that_are_no_areas_are_refused() {
     );
     assert_eq!(
         message(r#"{"type":"Polygon","coordinates":[[[2700000,1200000],[1,2],[3,4]]]}"#),
-        "expected longitude and latitude in degrees, found `[2700000,1200000]`"
+        "expected longitude and latitude in degrees at `coordinates[0][0]`, found `[2700000,1200000]`"
     );
     assert_eq!(
         message("<svg xmlns='http://www.w3.org/2000/svg'/>"),
@@ -163,10 +163,7 @@ fn badly_drawn_files_are_mended_with_a_warning() {
         "coordinates":[[[8,47],[8.001,47.001],[8.001,47],[8,47.001]]]}}"#;
     let nodes = r#""example": region_from_file(file: "yard.geojson", origin: file)"#;
     let found = told(&[("yard.geojson", square)], nodes).unwrap();
-    assert_eq!(
-        found[0],
-        "1 rings do not end where they began; they are closed"
-    );
+    assert_eq!(found[0], "1 ring does not end where it began; it is closed");
     assert!(
         found[1].starts_with("`Yard` crosses or touches itself at ("),
         "{}",
@@ -352,10 +349,10 @@ fn what_is_not_understood_in_an_svg_is_said_once() {
         [
             "style sheets are not regarded; only attributes and `style` of elements are",
             "a `clip-path` is not regarded; what it hides is taken too",
-            "the transform `rotat(45)` is not understood and left out",
-            "the length `height=\"3vw\"` is not understood and left out",
+            "the transform `rotat(45)` in line 2 is not understood and left out",
+            "the length `height=\"3vw\"` in line 2 is not understood and left out",
             "the use in line 3 uses `#gone`, which is left out",
-            "1 shapes without a fill are left out; those that `parts` names are taken",
+            "1 shape without a fill is left out; those that `parts` names are taken",
         ]
     );
 }

@@ -171,7 +171,7 @@ fn short(event: &Event) -> Option<String> {
         Event::MapWritten { path, .. } => format!("written {}", name(path)),
         Event::MapUpToDate { path, .. } => format!("up to date {}", name(path)),
         Event::MapRestored { path, .. } => format!("restored {}", name(path)),
-        Event::Warning { node, message } => format!("warning of {node}: {message}"),
+        Event::Warning { node, message, .. } => format!("warning of {node}: {message}"),
         Event::MapStale { path, .. } => format!("stale {}", name(path)),
         Event::StoreFailed { reason } => format!("store failed: {reason}"),
         Event::CacheVerified { compared } => format!("compared {compared}"),

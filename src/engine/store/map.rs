@@ -1,6 +1,7 @@
 //! Finished maps in the store: what is known of each, and a copy of its file.
 
 use super::{Family, Store, entry};
+use crate::engine::Spot;
 use crate::key::Key;
 use crate::output;
 use serde::{Deserialize, Serialize};
@@ -8,7 +9,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// What the store knows of a map that was written.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::engine) struct MapRecord {
     /// Samples that were not finite, and samples that were clamped: every run warns of them.
     pub(in crate::engine) faults: [u64; 2],
@@ -16,6 +17,8 @@ pub(in crate::engine) struct MapRecord {
     pub(in crate::engine) file: Key,
     /// Size of the file in bytes.
     pub(in crate::engine) bytes: u64,
+    /// Where the first sample is that was not finite.
+    pub(in crate::engine) first_not_finite: Option<Spot>,
 }
 
 impl Store {

@@ -26,6 +26,14 @@ impl Arithmetic {
         }
     }
 
+    /// Whether it is a number divided by 0.
+    pub(super) fn divides_by_zero(&self) -> bool {
+        let Arithmetic::Binary(Operator::Divide, parts) = self else {
+            return false;
+        };
+        matches!(**parts, [Arithmetic::Number(_), Arithmetic::Number(0.0)])
+    }
+
     /// The number that it gives if `number_of` knows every link.
     pub fn constant(&self, number_of: &dyn Fn(&Link) -> Option<f64>) -> Option<f64> {
         let constant = |inner: &Arithmetic| inner.constant(number_of);

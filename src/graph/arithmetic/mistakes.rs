@@ -38,19 +38,17 @@ impl Parser<'_, '_, '_> {
             })
     }
 
-    pub(super) fn refuse_not_finite<T>(&mut self, bytes: Span) -> Option<T> {
+    pub(super) fn refuse_not_finite<T>(&mut self, bytes: Span, by_zero: bool) -> Option<T> {
         let span = self.place(bytes);
-        let message = format!(
-            "{} must be finite, found arithmetic that is not",
-            shown(self.slot.name)
-        );
-        self.reader().refuse(
-            Code::NotFinite,
-            message,
-            span,
-            "not a finite number",
-            |error| error.expected("a finite number", "infinity or no number"),
-        )
+        let (found, label) = match by_zero {
+            true => ("a division by 0", "divides by 0"),
+            false => ("arithmetic that is not", "not a finite number"),
+        };
+        let message = format!("{} must be finite, found {found}", shown(self.slot.name));
+        self.reader()
+            .refuse(Code::NotFinite, message, span, label, |error| {
+                error.expected("a finite number", "infinity or no number")
+            })
     }
 
     pub(super) fn refuse_long<T>(&mut self, bytes: Span) -> Option<T> {

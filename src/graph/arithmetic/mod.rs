@@ -253,9 +253,10 @@ impl<'p, 'c, 's> Parser<'p, 'c, 's> {
         quantity: Quantity,
         bytes: Span,
     ) -> Option<Part> {
+        let by_zero = expression.divides_by_zero();
         let expression = match expression.fold() {
             Arithmetic::Number(number) if !number.is_finite() => {
-                return self.refuse_not_finite(bytes);
+                return self.refuse_not_finite(bytes, by_zero);
             }
             folded => folded,
         };

@@ -5,10 +5,12 @@
 //! plain values for the rest: ratios as they are, normals as (n + 1) / 2, lengths and extras scaled from their
 //! range. Floats (EXR, `tiff_half`, `tiff_float`) hold everything as it is, colours linear.
 
-use crate::diagnostics::nearest;
+mod channels;
+
+use self::channels::{check_range, known_channels, ranged};
+use crate::field::Field;
 use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
-use crate::nodes::surface::material::STANDARD_CHANNELS;
-use crate::value::{Domain, FileType, MapFormat, Maps, Material, Type, Unit, Value};
+use crate::value::{Domain, MapFormat, Maps, Material, Type, Unit, Value};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -101,11 +103,10 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         );
     }
     let ranges = ranges(inputs)?;
-    for channel in ranges.keys() {
-        known_channel("ranges", channel, material)?;
-    }
+    known_channels("channels", channels.iter(), material)?;
+    known_channels("ranges", ranged(inputs), material)?;
     for channel in &channels {
-        check_channel(channel, material, format, &ranges)?;
+        check_range(inputs, channel, material, format, &ranges)?;
     }
     let mut sorted = channels.clone();
     sorted.sort();
@@ -114,6 +115,7 @@ fn build(inputs: &Inputs<'_>, _: &Build<'_>) -> Result<Vec<Value>, Failure> {
         return Err(Failure::of_input("channels", message).with_hint("remove one of them"));
     }
     let pixels = pixels(inputs, size)?;
+    warn_of_seams(inputs, size, &channels, material);
     let maps = Maps {
         material: (**material).clone(),
         pixels,
@@ -147,57 +149,6 @@ fn ranges(inputs: &Inputs<'_>) -> Result<BTreeMap<String, [f64; 2]>, Failure> {
     Ok(ranges)
 }
 
-/// Refuses names that are no channel of the material, with the nearest that is one.
-fn known_channel(input: &'static str, channel: &str, material: &Material) -> Result<(), Failure> {
-    if channel == "normal" || material.channels.contains_key(channel) {
-        return Ok(());
-    }
-    let names = || {
-        material
-            .channels
-            .keys()
-            .map(String::as_str)
-            .chain(["normal"])
-    };
-    let near = nearest(channel, names());
-    let suggestion = match near.first() {
-        Some(near) => format!("did you mean `{near}`? "),
-        None => String::new(),
-    };
-    let all = names().collect::<Vec<_>>().join(", ");
-    let message = format!("the material has no channel `{channel}`");
-    Err(Failure::of_input(input, message).with_hint(format!("{suggestion}it has {all}")))
-}
-
-fn check_channel(
-    channel: &str,
-    material: &Material,
-    format: MapFormat,
-    ranges: &BTreeMap<String, [f64; 2]>,
-) -> Result<(), Failure> {
-    known_channel("channels", channel, material)?;
-    let is_ratio =
-        channel == "normal" || (channel != "height" && STANDARD_CHANNELS.contains(&channel));
-    let is_number = material
-        .channels
-        .get(channel)
-        .is_some_and(|field| field.width() == 1);
-    let is_whole = !format.sample_type().is_float();
-    if is_whole && is_number && !is_ratio && !ranges.contains_key(channel) {
-        let file = match format.file_type() {
-            FileType::Tiff => "a TIFF of whole samples",
-            FileType::Bmp => "a BMP",
-            _ => "a PNG",
-        };
-        let message =
-            format!("{file} of `{channel}` needs to know which values are black and white");
-        return Err(Failure::of_input("channels", message).with_hint(format!(
-            "add `ranges: [(channel: \"{channel}\", low: 0, high: 1)]` with its values, or write EXR"
-        )));
-    }
-    Ok(())
-}
-
 /// Width and height of the piece: its own, or as stated.
 fn size(inputs: &Inputs<'_>, own: Option<[f64; 2]>) -> Result<[f64; 2], Failure> {
     let stated = inputs.get("size").map(|_| inputs.pair("size"));
@@ -212,6 +163,39 @@ fn size(inputs: &Inputs<'_>, own: Option<[f64; 2]>) -> Result<[f64; 2], Failure>
             let message = format!("the piece has a size of its own, {width} x {height} mm");
             Err(Failure::of_input("size", message).with_hint("remove `size`"))
         }
+    }
+}
+
+/// How far a number of periods may be from a whole one.
+const WHOLE: f64 = 1e-4;
+
+/// Warns if cells that repeat do not fit the piece a whole number of times. Less than a period is a look at a part.
+fn warn_of_seams(inputs: &Inputs<'_>, size: [f64; 2], channels: &[String], material: &Material) {
+    let shown = |channel: &String| match channel.as_str() {
+        "normal" => material.channels.get("height"),
+        name => material.channels.get(name),
+    };
+    let mut periods: Vec<[f64; 2]> = vec![];
+    for period in channels.iter().filter_map(shown).flat_map(Field::periods) {
+        if !periods.contains(&period) {
+            periods.push(period);
+        }
+    }
+    let does_not_meet = |[width, height]: &[f64; 2]| {
+        let times = [size[0] / width, size[1] / height];
+        let is_part = |times: &f64| *times > 1.0 - WHOLE && (times - times.round()).abs() > WHOLE;
+        times.iter().any(is_part)
+    };
+    for [width, height] in periods.into_iter().filter(does_not_meet) {
+        let fitting = [size[0] / width, size[1] / height].map(|times| times.floor().max(1.0));
+        inputs.warn(format!(
+            "the picture shows {} x {} mm of cells that repeat every {width} x {height} mm, so it has a seam where it is tiled; \
+             {} x {} mm would have none",
+            size[0],
+            size[1],
+            fitting[0] * width,
+            fitting[1] * height
+        ));
     }
 }
 

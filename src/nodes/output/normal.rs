@@ -24,6 +24,9 @@ pub(crate) fn normal_from_height(node: &Arc<str>, material: &Material) -> Field 
     Field::kernel(node, Arc::new(Normal { on_surface }), inputs)
 }
 
+/// Squares of slopes up to this are finite.
+const STEEPEST: f32 = 1e18;
+
 /// Columns in: height, position, and on a surface dP/du and dP/dv.
 #[derive(Debug)]
 struct Normal {
@@ -32,7 +35,7 @@ struct Normal {
 
 impl Kernel for Normal {
     fn add_to_key(&self, key: &mut KeyHasher) {
-        key.text("normal_from_height").whole(1);
+        key.text("normal_from_height").whole(2);
     }
 
     fn width(&self) -> usize {
@@ -65,12 +68,22 @@ impl Kernel for Normal {
                 true => on_surface(&block.inputs[4..], index, [rise_u, rise_v]),
                 false => [rise_u, rise_v],
             };
+            let [rise_u, rise_v] = measurable([rise_u, rise_v]);
             let length = (rise_u * rise_u + rise_v * rise_v + 1.0).sqrt();
             normal_u[index] = -rise_u / length;
             normal_v[index] = -rise_v / length;
             normal_w[index] = 1.0 / length;
         }
     }
+}
+
+/// Slopes whose squares do not overflow: of those that would, the direction is what counts.
+fn measurable(slopes: [f32; 2]) -> [f32; 2] {
+    let steepest = slopes[0].abs().max(slopes[1].abs());
+    if steepest > STEEPEST && steepest < f32::INFINITY {
+        return slopes.map(|slope| slope / steepest * STEEPEST);
+    }
+    slopes
 }
 
 /// The slopes along tangent and bitangent; 0 where the surface has no area.
@@ -160,6 +173,18 @@ mod tests {
             apart.fold(0.0, f32::max) < 1e-5,
             "{found:?}, not {expected:?}"
         );
+    }
+
+    #[test]
+    fn walls_of_any_height_have_normals_of_length_1() {
+        let slopes = measurable([3e30, -4e30]);
+        assert!(
+            (slopes[0] / 7.5e17 - 1.0).abs() < 1e-6 && slopes[1] == -1e18,
+            "{slopes:?}"
+        );
+        assert!((slopes[0] * slopes[0] + slopes[1] * slopes[1]).is_finite());
+        assert_eq!(measurable([0.3, 1e18]), [0.3, 1e18]);
+        assert!(measurable([f32::NAN, 1.0])[0].is_nan());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::ground::Ground;
 use crate::geometry::assemble::{Piece, assemble, clip_from, merge_slivers, pieces_of};
 use crate::geometry::polygon::{Edges, chorded};
-use crate::node::{Build, Failure, Input, Inputs};
+use crate::node::{Build, Failure, Input, Inputs, counted};
 use crate::value::{Partition, Polygon, Region, Type, Unit};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -220,7 +220,11 @@ fn some(partition: Partition) -> Result<Partition, Failure> {
 /// Says how many cells were joined to others.
 pub(super) fn warn_of_joined(inputs: &Inputs<'_>, joined: usize) {
     if joined > 0 {
-        inputs.warn(format!("{joined} slivers were joined to their neighbours"));
+        inputs.warn(counted(
+            joined,
+            "sliver was joined to its neighbour",
+            "slivers were joined to their neighbours",
+        ));
     }
 }
 

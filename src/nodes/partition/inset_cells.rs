@@ -105,19 +105,37 @@ fn warn_of_rest(inputs: &Inputs<'_>, rest: &[Option<Rest>]) -> Result<(), Failur
     let apart = rest.iter().flatten().filter(|rest| rest.parts > 1).count();
     let all = rest.len();
     if vanished == all {
-        return Err(Failure::of_input("joint", "nothing is left of any cell")
-            .with_hint("make the joints narrower"));
+        let failure = Failure::of_input("joint", "nothing is left of any cell");
+        let hint = match inputs.number("least") {
+            0.0 => "make the joints narrower",
+            _ => "make the joints narrower, or lower `least`",
+        };
+        return Err(failure.with_hint(hint));
     }
+    let of_all = |count, does, do_all| {
+        let verb = if count == 1 { does } else { do_all };
+        format!("{count} of {all} cells {verb} between their joints")
+    };
     if vanished > 0 {
-        let message = format!("{vanished} of {all} cells vanish between their joints");
-        inputs.warn(message);
+        inputs.warn(of_all(vanished, "vanishes", "vanish"));
     }
     if apart > 0 {
-        inputs.warn(format!(
-            "{apart} of {all} cells fall apart between their joints: the largest part of each is kept"
-        ));
+        let said = of_all(apart, "falls apart", "fall apart");
+        inputs.warn(format!("{said}: the largest part of each is kept"));
     }
     Ok(())
+}
+
+/// Says at how many edges the joint would have less than no width.
+fn warn_of_negative(inputs: &Inputs<'_>, widths: &[f32]) {
+    let below = || widths.iter().filter(|width| **width < 0.0);
+    if let Some(least) = below().copied().reduce(f32::min) {
+        inputs.warn(format!(
+            "the joint is below 0 at {} of {} edges, down to {least} mm: cells do not move there",
+            below().count(),
+            widths.len()
+        ));
+    }
 }
 
 /// How far each edge moves inwards.
@@ -132,6 +150,7 @@ fn offs(inputs: &Inputs<'_>, build: &Build<'_>, cells: &Partition) -> Result<Vec
             .map_or(middle, |period| middle - (middle / period).floor() * period)
     });
     let widths = inputs.sample("joint", build, &middles.collect::<Vec<_>>())?;
+    warn_of_negative(inputs, &widths[0]);
     let random = Random::new(build.seed, "inset_cells joint", inputs.whole("seed"));
     let (vary, by_cell) = (inputs.pair("vary"), inputs.choice("each") == "cell");
     let border = inputs.get("border").map(|_| inputs.number("border"));

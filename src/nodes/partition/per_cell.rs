@@ -18,7 +18,7 @@ use self::laid::Laid;
 use super::cell_fields::seed;
 use super::found::{Found, Quantity};
 use crate::field::{Field, names_read};
-use crate::node::{Build, Failure, Input, Inputs, Kind, Output, field_of};
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output, counted, field_of};
 use crate::nodes::surface::material::default_of;
 use crate::value::{Domain, Material, Partition, Surface, Type, Unit, Value};
 use glam::DVec2;
@@ -59,6 +59,7 @@ pub static KIND: Kind = Kind {
             "Where in the material a cell's centre lies; as it is at the centre.",
         )
         .per_point()
+        .range(-1e9, 1e9)
         .of(Domain::Plane)
         .default("(0, 0, 0)"),
         Input::new(
@@ -222,8 +223,9 @@ fn warn_of_numbers(inputs: &Inputs<'_>, build: &Build<'_>, last: usize) -> Resul
     let is_beyond = |number: &&f32| **number < -0.5 || **number >= last as f32 + 0.5;
     let count = numbers[0].iter().filter(is_beyond).count();
     if count > 0 {
+        let cells = counted(count, "cell", "cells");
         inputs.warn(format!(
-            "`choose` gives {count} cells a number that is not from 0 to {last}; they have the nearest material"
+            "`choose` gives {cells} a number that is not from 0 to {last}: the nearest material is taken"
         ));
     }
     Ok(())

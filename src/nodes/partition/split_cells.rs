@@ -13,7 +13,7 @@ mod woven;
 use super::division::{MERGE_BELOW, Pieces, Plot, WITHIN, covered, divided};
 use super::ground::{PERIOD, REGION, SIZE};
 use crate::geometry::assemble::{Piece, Ring};
-use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output, stretched};
 use crate::nodes::random::Random;
 use crate::value::{Type, Unit, Value};
 use glam::DVec2;
@@ -117,11 +117,12 @@ const PATTERNS: [&str; 9] = [
     "recursive",
 ];
 
-/// Most cells of one plot.
+/// Most cells.
 const MOST: f64 = 4e6;
 
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let plots = Plot::all(inputs)?;
+    check_count(inputs, &plots)?;
     let random = Random::new(build.seed, KIND.name, inputs.whole("seed"));
     let laid = |plot: &Plot| {
         let stream = random.of_item(plot.parent.unwrap_or_default());
@@ -144,12 +145,13 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
 
 /// Says by how much the pattern was stretched.
 fn warn_of_stretch(inputs: &Inputs<'_>, stretch: DVec2) {
-    if (stretch - 1.0).abs().max_element() > 1e-6 {
-        inputs.warn(format!(
-            "the pattern was made {:.2} % longer and {:.2} % wider, so that it closes",
-            100.0 * (stretch.x - 1.0),
-            100.0 * (stretch.y - 1.0)
-        ));
+    let factors = [
+        (stretch.x, ["longer", "shorter"]),
+        (stretch.y, ["wider", "narrower"]),
+    ];
+    let said = stretched(&factors, 2);
+    if !said.is_empty() {
+        inputs.warn(format!("the pattern was made {said}, so that it closes"));
     }
 }
 
@@ -200,6 +202,21 @@ fn board(inputs: &Inputs<'_>, window: &Window) -> Result<DVec2, Failure> {
     Ok(DVec2::new(length, width))
 }
 
+/// Refuses more boards than one partition may have, over all plots.
+fn check_count(inputs: &Inputs<'_>, plots: &[Plot]) -> Result<(), Failure> {
+    let width = inputs.number("width");
+    let length = inputs
+        .get("length")
+        .map_or(width, |_| inputs.number("length"));
+    let area: f64 = plots.iter().map(Plot::area).sum();
+    let count = area / (length * width);
+    if count <= MOST {
+        return Ok(());
+    }
+    let message = format!("expected at most {MOST} cells, found about {count:.0}");
+    Err(Failure::of_input("width", message).with_hint("choose larger cells"))
+}
+
 /// Lays the pattern over a window.
 fn lay(
     inputs: &Inputs<'_>,
@@ -222,7 +239,7 @@ fn lay(
         "fan" => {
             let lane = inputs.get("lane");
             let lane = lane.map_or(12.0 * board.x, |_| inputs.number("lane"));
-            Ok(fan::lay(window, board, lane, inputs.number("rise"), plot))
+            fan::lay(window, board, lane, inputs.number("rise"), plot)
         }
         "hexagons" => Ok(hexagons::lay(window, board.y)),
         _ => {

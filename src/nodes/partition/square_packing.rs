@@ -307,20 +307,20 @@ fn guide(
     shape: &Shape,
 ) -> Result<Guide, Failure> {
     let bounds = bounds(&ground.region);
-    let scale = inputs.field("scale");
     let (points, columns) = Guide::points(bounds, shape.stone.y);
     let turned = turned(inputs, build, ground, shape.symmetry, &points)?;
-    let scales = build.sample(&scale, &points)?;
-    let scales: Vec<f64> = scales[0]
-        .iter()
-        .map(|scale| f64::from(*scale).clamp(LEAST, LARGEST))
-        .collect();
-    if scales.iter().any(|scale| scale.is_nan()) {
+    let scales = inputs.sample("scale", build, &points)?;
+    let scales: Vec<f64> = scales[0].iter().map(|scale| f64::from(*scale)).collect();
+    if scales.iter().all(|scale| *scale <= 0.0) {
         return Err(Failure::of_input(
             "scale",
-            "expected numbers, found places where it is none",
+            "stones would have no size: the factor is nowhere above 0",
         ));
     }
+    let scales: Vec<f64> = scales
+        .into_iter()
+        .map(|scale| scale.clamp(LEAST, LARGEST))
+        .collect();
     Ok(Guide::new(
         bounds,
         columns,
@@ -341,7 +341,12 @@ fn turned(
     let field: Option<Field> = inputs.optional_field("direction");
     match (field, ground.period) {
         (Some(field), _) => {
-            let columns = build.sample(&field, points)?;
+            let columns = build.sample_finite("direction", &field, points)?;
+            if columns[..2].iter().flatten().all(|part| *part == 0.0) {
+                let message = "the direction has no length in the plane anywhere";
+                return Err(Failure::of_input("direction", message)
+                    .with_hint("state x and y, such as `(1, 0, 0)`, or link a `direction_field`"));
+            }
             let parts = columns[0].par_iter().zip(&columns[1]);
             let turned = parts.map(|(x, y)| {
                 let vector = DVec2::new(f64::from(*x), f64::from(*y));

@@ -21,7 +21,7 @@ use super::division::{
 use super::ground::{PERIOD, REGION, SIZE};
 use crate::geometry::assemble::{Piece, assemble, pieces_of};
 use crate::geometry::voronoi::{Bounds, power_cells, voronoi};
-use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output, counted, stretched};
 use crate::nodes::random::Random;
 use crate::value::{Domain, Partition, Type, Unit, Value};
 use density::Density;
@@ -131,6 +131,7 @@ const OFF: f64 = 1e-4;
 fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> {
     let layout = Layout::read(inputs)?;
     let plots = Plot::all(inputs)?;
+    layout.check_count(&plots)?;
     let density = Density::read(inputs, build);
     let random = Random::new(build.seed, KIND.name, inputs.whole("seed"));
     let split = |plot: &Plot, seeds: Seeds| split(plot, seeds, &layout, &density, build);
@@ -250,28 +251,26 @@ fn cells_of(
 fn warn_of_size(inputs: &Inputs<'_>, seeds: &Seeds) {
     let [x, y] = seeds.stretch.to_array();
     if (x - 1.0).abs().max((y - 1.0).abs()) > 0.01 {
-        inputs.warn(format!(
-            "the lattice was made {:.1} % wider and {:.1} % higher, so that it closes",
-            100.0 * (x - 1.0),
-            100.0 * (y - 1.0)
-        ));
+        let said = stretched(&[(x, ["wider", "narrower"]), (y, ["higher", "lower"])], 1);
+        inputs.warn(format!("the lattice was made {said}, so that it closes"));
     }
 }
 
 /// Says how many seeds have no cell, and why.
 fn warn_of_lost(inputs: &Inputs<'_>, [equal, outside, hidden]: [usize; 3]) {
     if equal > 0 {
+        let seeds = counted(equal, "seed lies", "seeds lie");
         inputs.warn(format!(
-            "{equal} seeds lie where others do: of equal ones the first has the cell"
+            "{seeds} where others do: of equal ones the first has the cell"
         ));
     }
     if outside > 0 && inputs.get("points").is_some() {
-        inputs.warn(format!(
-            "{outside} seeds lie so far outside that they have no cell"
-        ));
+        let seeds = counted(outside, "seed lies", "seeds lie");
+        inputs.warn(format!("{seeds} too far outside to have a cell"));
     }
     if hidden > 0 && inputs.get("points").is_some() {
-        inputs.warn(format!("{hidden} seeds have no cell beside heavier ones"));
+        let seeds = counted(hidden, "seed has", "seeds have");
+        inputs.warn(format!("{seeds} no cell beside heavier ones"));
     }
 }
 

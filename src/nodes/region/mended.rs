@@ -1,6 +1,6 @@
 //! Drawn polygons become a region, and the recipe's author hears what had to be mended.
 
-use crate::geometry::polygon::{Fault, Nothing, Wrong, mend};
+use crate::geometry::polygon::{Fault, Nothing, Wrong, doubled_area, mend};
 use crate::node::{Failure, Inputs};
 use crate::value::{Polygon, Region};
 use glam::DVec2;
@@ -45,12 +45,20 @@ pub(super) fn mended(
             Nothing::Corners(found) => {
                 format!("expected at least 3 different corners of {ring}, found {found}")
             }
+            Nothing::Area if hole.is_none() && is_only_in_holes(&drawn[number]) => {
+                format!("the holes of {ring} leave nothing of it")
+            }
             Nothing::Area => format!("{ring} encloses no area"),
         };
         Failure::of_input(input, message).at_item(number)
     })?;
     warn(inputs, &faults, name);
     Ok(region)
+}
+
+/// Whether it is holes that leave nothing of a polygon.
+fn is_only_in_holes(polygon: &Polygon) -> bool {
+    !polygon.holes.is_empty() && doubled_area(&polygon.outline) != 0.0
 }
 
 fn is_too_far(corner: DVec2) -> bool {

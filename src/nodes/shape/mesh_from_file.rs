@@ -14,7 +14,7 @@ mod stl;
 
 use super::scan::{self, UNIT, UP};
 use crate::geometry::mesh::{self, Finish, Soup};
-use crate::node::{Build, Failure, Input, Inputs, Kind, Output};
+use crate::node::{Build, Failure, Input, Inputs, Kind, Output, counted};
 use crate::value::{Type, Unit, Value};
 use std::sync::Arc;
 
@@ -91,7 +91,12 @@ fn build(inputs: &Inputs<'_>, build: &Build<'_>) -> Result<Vec<Value>, Failure> 
         return Err(Failure::of_input("file", message).with_hint(hint));
     }
     if left_out > 0 {
-        inputs.warn(format!("{left_out} triangles without an area are left out"));
+        let triangles = counted(
+            left_out,
+            "triangle without an area is",
+            "triangles without an area are",
+        );
+        inputs.warn(format!("{triangles} left out"));
     }
     Ok(vec![Value::Mesh(Arc::new(mesh))])
 }

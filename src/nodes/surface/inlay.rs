@@ -12,6 +12,7 @@
 //! depth h the share sin(atan(g / 2h)) of the sky is seen. All of this is a profile of d, averaged exactly over each
 //! pixel, so a gap that is finer than a pixel darkens it as much as it should.
 
+mod room;
 mod zones;
 
 use self::zones::{Cut, Joined, Seen, Zones};
@@ -229,6 +230,8 @@ fn of_cells(cells: &Arc<Partition>, inputs: &Inputs<'_>, build: &Build<'_>) -> [
     if inputs.material("ground").size.is_some_and(is_beside) {
         inputs
             .warn("nothing is let in: the outline lies beside the ground, which begins at (0, 0)");
+    } else {
+        room::warn_of_room(inputs, cells);
     }
     let found = Found::new(build, cells);
     let beyond = match cells.touches() {

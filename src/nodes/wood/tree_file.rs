@@ -19,7 +19,7 @@ mod segments;
 pub(super) use crate::nodes::cells::{Fault, LengthUnit};
 
 use crate::geometry::spline::TrunkCurve;
-use crate::node::Build;
+use crate::node::{Build, counted};
 use crate::nodes::cells;
 use crate::value::{Branch, Skeleton, Tangents, Thickness};
 use glam::DVec3;
@@ -151,23 +151,27 @@ fn branches(
     let reasons = [
         (
             twigs,
-            "branches of branches are left out: a branch is straight and begins on the trunk",
+            "branch of a branch is left out",
+            "branches of branches are left out",
+            ": a branch is straight and begins on the trunk",
         ),
         (
             beyond,
+            "branch begins below or above the trunk and is left out",
             "branches begin below or above the trunk and are left out",
+            "",
         ),
         (
             thin,
+            "branch has no length or thickness and is left out",
             "branches have no length or thickness and are left out",
+            "",
         ),
     ];
-    for (lines, reason) in reasons {
+    for (lines, one, many, reason) in reasons {
         if let Some(first) = lines.first() {
-            warnings.push(format!(
-                "{} {reason}; the first is in line {first}",
-                lines.len()
-            ));
+            let left_out = counted(lines.len(), one, many);
+            warnings.push(format!("{left_out}{reason}; the first is in line {first}"));
         }
     }
     Ok(branches)

@@ -98,6 +98,10 @@ impl Kernel for Find {
         60.0
     }
 
+    fn period(&self) -> Option<[f64; 2]> {
+        self.partition.period.map(|period| period.to_array())
+    }
+
     fn evaluate(&self, block: &mut Block<'_>) {
         let partition = &self.partition;
         let index = self.index.get_or_init(|| CellIndex::new(partition));

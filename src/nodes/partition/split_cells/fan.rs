@@ -7,6 +7,7 @@
 use super::super::division::Plot;
 use super::ground::{Laid, Tile, Window};
 use crate::geometry::polygon::Edges;
+use crate::node::Failure;
 use glam::DVec2;
 
 /// Chords instead of an arc.
@@ -24,12 +25,29 @@ struct Arc {
 }
 
 /// Lays setts of a size over the window, in lanes with arcs that rise by a share of the lane's width.
-pub(super) fn lay(window: &Window, sett: DVec2, lane: f64, rise: f64, plot: &Plot) -> Laid {
+///
+/// # Errors
+/// If courses are so wide that a joint, which points to the middle of its arc, does not meet the next one.
+pub(super) fn lay(
+    window: &Window,
+    sett: DVec2,
+    lane: f64,
+    rise: f64,
+    plot: &Plot,
+) -> Result<Laid, Failure> {
     let lanes = window.steps(0, lane, 1);
     let courses = window.steps(1, sett.y, 2);
     let sagitta = rise * lanes.step;
     let radius = 0.5 * (0.25 * lanes.step * lanes.step / sagitta + sagitta);
     let half = libm::asin(0.5 * lanes.step / radius);
+    if courses.step * libm::sin(half) >= radius {
+        let message = format!(
+            "courses are {:.3} mm wide, which is more than the arcs of lanes of {:.3} mm have room for",
+            courses.step, lanes.step
+        );
+        return Err(Failure::of_input("width", message)
+            .with_hint("state a smaller `width` of a sett, or a wider `lane`"));
+    }
     let arc = Arc {
         radius,
         half,
@@ -55,7 +73,7 @@ pub(super) fn lay(window: &Window, sett: DVec2, lane: f64, rise: f64, plot: &Plo
             }
         }
     }
-    Laid::over(tiles, [lanes.stretch, courses.stretch])
+    Ok(Laid::over(tiles, [lanes.stretch, courses.stretch]))
 }
 
 impl Arc {

@@ -33,7 +33,7 @@ impl<'a> Density<'a> {
     /// So many seeds anywhere in a plot.
     ///
     /// # Errors
-    /// If the density is 0 everywhere, or the run was cancelled.
+    /// If the density is nowhere above 0 or not finite, or the run was cancelled.
     pub(super) fn seeds(
         &self,
         plot: &Plot,
@@ -146,17 +146,15 @@ impl Raster {
             low + (at + 0.5) * size
         };
         let middles: Vec<DVec2> = (0..columns * rows).map(middle).collect();
-        let found = build.sample(field, &middles)?;
+        let found = build.sample_finite("density", field, &middles)?;
         let mut sum = 0.0;
         let mut sums = vec![];
         for density in &found[0] {
-            if density.is_finite() {
-                sum += f64::from(density.max(0.0));
-            }
+            sum += f64::from(density.max(0.0));
             sums.push(sum);
         }
         if sum <= 0.0 {
-            let failure = Failure::of_input("density", "the density is 0 everywhere");
+            let failure = Failure::of_input("density", "the density is nowhere above 0");
             return Err(failure.with_hint("seeds are where the density is above 0"));
         }
         Ok(Raster {

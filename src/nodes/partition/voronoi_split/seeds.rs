@@ -92,6 +92,32 @@ impl Layout {
         Ok(self)
     }
 
+    /// Refuses more cells than one partition may have, over all plots.
+    ///
+    /// # Errors
+    /// If there would be too many.
+    pub(super) fn check_count(&self, plots: &[Plot]) -> Result<(), Failure> {
+        let (input, each) = match self.size {
+            Size::Count(count) => ("count", count * plots.len() as f64),
+            Size::Given => ("points", (self.points.len() * plots.len()) as f64),
+            Size::Side(side) => {
+                let area: f64 = plots.iter().map(Plot::area).sum();
+                ("cell_size", area / (side * side))
+            }
+        };
+        if each <= MOST {
+            return Ok(());
+        }
+        let message = format!("expected at most {MOST} cells, found about {each:.0}");
+        let hint = match plots.len() {
+            1 => "choose larger cells".to_owned(),
+            parts => {
+                format!("choose larger cells: each of the {parts} cells of `within` is divided")
+            }
+        };
+        Err(Failure::of_input(input, message).with_hint(hint))
+    }
+
     /// The seeds of a plot.
     ///
     /// # Errors

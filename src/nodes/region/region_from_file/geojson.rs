@@ -2,7 +2,7 @@
 
 use super::projection::Projection;
 use super::{Drawn, check_parts, refuse};
-use crate::node::{Failure, Inputs};
+use crate::node::{Failure, Inputs, counted};
 use crate::value::Polygon;
 use glam::DVec2;
 use serde_json::Value;
@@ -34,7 +34,7 @@ pub(super) fn read(
     let file: Value = serde_json::from_str(text)
         .map_err(|error| refuse(format!("the file is no JSON: {error}")))?;
     let mut contents = Contents::default();
-    contents.add(&file, &[])?;
+    contents.add(&file, &[], "")?;
     let is_called = |found: &Found, part: &str| found.names.iter().any(|name| name == part);
     let names = contents
         .found
@@ -46,10 +46,12 @@ pub(super) fn read(
         .found
         .retain(|found| parts.is_empty() || parts.iter().any(|part| is_called(found, part)));
     if contents.unclosed > 0 {
-        inputs.warn(format!(
-            "{} rings do not end where they began; they are closed",
-            contents.unclosed
-        ));
+        let rings = counted(
+            contents.unclosed,
+            "ring does not end where it began; it is",
+            "rings do not end where they began; they are",
+        );
+        inputs.warn(format!("{rings} closed"));
     }
     if contents.found.is_empty() && contents.others > 0 {
         let message = format!(
@@ -120,10 +122,10 @@ fn project(mut found: Vec<Found>) -> Result<Vec<Drawn>, Failure> {
 }
 
 impl Contents {
-    /// Adds all that is in an object; `names` are those of what it is in.
-    fn add(&mut self, object: &Value, names: &[String]) -> Result<(), Failure> {
+    /// Adds all that is in an object; `names` are those of what it is in, and `at` says where it is in the file.
+    fn add(&mut self, object: &Value, names: &[String], at: &str) -> Result<(), Failure> {
         let Some(kind) = object.get("type").and_then(Value::as_str) else {
-            let message = "the file is no GeoJSON: an object without `type`";
+            let message = format!("the file is no GeoJSON: {} has no `type`", place(at));
             return Err(refuse(message).with_hint("GeoJSON (RFC 7946) and SVG are read"));
         };
         let list = |name: &str| {
@@ -134,34 +136,53 @@ impl Contents {
                 .unwrap_or_default()
         };
         match kind {
-            "FeatureCollection" => list("features")
-                .iter()
-                .try_for_each(|it| self.add(it, names)),
-            "GeometryCollection" => list("geometries")
-                .iter()
-                .try_for_each(|it| self.add(it, names)),
+            "FeatureCollection" => self.add_all(&list("features"), names, &inner(at, "features")),
+            "GeometryCollection" => {
+                self.add_all(&list("geometries"), names, &inner(at, "geometries"))
+            }
             "Feature" => match object.get("geometry") {
                 None | Some(Value::Null) => Ok(()),
-                Some(geometry) => self.add(geometry, &names_of(object)),
+                Some(geometry) => self.add(geometry, &names_of(object), &inner(at, "geometry")),
             },
-            "Polygon" => self.add_polygon(&list("coordinates"), names),
-            "MultiPolygon" => list("coordinates").iter().try_for_each(|polygon| {
-                let rings = polygon.as_array().cloned().unwrap_or_default();
-                self.add_polygon(&rings, names)
-            }),
+            "Polygon" => self.add_polygon(&list("coordinates"), names, &inner(at, "coordinates")),
+            "MultiPolygon" => {
+                let polygons = list("coordinates");
+                let at = inner(at, "coordinates");
+                polygons
+                    .iter()
+                    .enumerate()
+                    .try_for_each(|(index, polygon)| {
+                        let rings = polygon.as_array().cloned().unwrap_or_default();
+                        self.add_polygon(&rings, names, &format!("{at}[{index}]"))
+                    })
+            }
             "Point" | "MultiPoint" | "LineString" | "MultiLineString" => {
                 self.others += 1;
                 Ok(())
             }
-            other => Err(refuse(format!("`{other}` is no type of GeoJSON"))),
+            other => {
+                let message = format!(
+                    "{} has the type `{other}`, which is none of GeoJSON",
+                    place(at)
+                );
+                Err(refuse(message))
+            }
         }
     }
 
-    fn add_polygon(&mut self, rings: &[Value], names: &[String]) -> Result<(), Failure> {
+    fn add_all(&mut self, items: &[Value], names: &[String], at: &str) -> Result<(), Failure> {
+        let mut items = items.iter().enumerate();
+        items.try_for_each(|(index, it)| self.add(it, names, &format!("{at}[{index}]")))
+    }
+
+    fn add_polygon(&mut self, rings: &[Value], names: &[String], at: &str) -> Result<(), Failure> {
         let mut read = vec![];
-        for ring in rings {
+        for (number, ring) in rings.iter().enumerate() {
             let ring = ring.as_array().map(Vec::as_slice).unwrap_or_default();
-            let ring: Vec<DVec2> = ring.iter().map(position).collect::<Result<_, _>>()?;
+            let corners = ring.iter().enumerate();
+            let ring: Vec<DVec2> = corners
+                .map(|(index, corner)| position(corner, || format!("{at}[{number}][{index}]")))
+                .collect::<Result<_, _>>()?;
             self.unclosed += usize::from(ring.first() != ring.last());
             read.push(ring);
         }
@@ -170,6 +191,22 @@ impl Contents {
             rings: read,
         });
         Ok(())
+    }
+}
+
+/// The path of a part of an object: `features[2].geometry`, indices from 0.
+fn inner(at: &str, part: &str) -> String {
+    match at {
+        "" => part.to_owned(),
+        _ => format!("{at}.{part}"),
+    }
+}
+
+/// An object in a message.
+fn place(at: &str) -> String {
+    match at {
+        "" => "its object".to_owned(),
+        _ => format!("`{at}`"),
     }
 }
 
@@ -187,14 +224,18 @@ fn names_of(feature: &Value) -> Vec<String> {
     both.filter_map(text).collect()
 }
 
-fn position(value: &Value) -> Result<DVec2, Failure> {
+/// Longitude and latitude in degrees; `at` says where they are in the file.
+fn position(value: &Value, at: impl Fn() -> String) -> Result<DVec2, Failure> {
     let part = |index: usize| value.get(index).and_then(Value::as_f64);
     match (part(0), part(1)) {
         (Some(x), Some(y)) if x.abs() <= 360.0 && y.abs() < 90.0 => Ok(DVec2::new(x, y)),
         _ => {
             let mut found = value.to_string();
             found.truncate(found.char_indices().nth(40).map_or(found.len(), |it| it.0));
-            let message = format!("expected longitude and latitude in degrees, found `{found}`");
+            let message = format!(
+                "expected longitude and latitude in degrees at `{}`, found `{found}`",
+                at()
+            );
             Err(refuse(message)
                 .with_hint("GeoJSON has coordinates of WGS 84; export the file anew in them"))
         }

@@ -7,8 +7,8 @@ mod viewport;
 use super::pen::Pen;
 use super::{Drawn, check_parts, refuse};
 use crate::geometry::polygon::{Lattice, rings_of};
-use crate::node::{Build, Failure, Inputs};
-use attributes::{length, property, transform};
+use crate::node::{Build, Failure, Inputs, counted};
+use attributes::{length, line, property, transform};
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -48,14 +48,22 @@ struct Waiting<'a> {
     uses: usize,
 }
 
+/// Most complaints that are told; what is left is counted.
+const TOLD: usize = 12;
+
 /// What was not understood or left out, each once.
 #[derive(Debug, Default)]
-struct Complaints(Vec<String>);
+struct Complaints {
+    told: Vec<String>,
+    more: usize,
+}
 
 impl Complaints {
     fn add(&mut self, complaint: String) {
-        if !self.0.contains(&complaint) {
-            self.0.push(complaint);
+        match self.told.len() {
+            _ if self.told.contains(&complaint) => {}
+            TOLD.. => self.more += 1,
+            _ => self.told.push(complaint),
         }
     }
 }
@@ -144,11 +152,22 @@ impl<'a> Drawing<'a> {
 
     /// What was drawn, after warnings; of a file without areas the first complaint says why.
     fn finish(self, inputs: &Inputs<'_>) -> Result<Vec<Drawn>, Failure> {
-        let mut complaints = self.complaints.0;
+        let Complaints {
+            told: mut complaints,
+            more,
+        } = self.complaints;
+        if more > 0 {
+            let more = counted(more, "more thing is", "more things are");
+            complaints.push(format!("{more} not understood or left out"));
+        }
         if self.unfilled > 0 {
+            let shapes = counted(
+                self.unfilled,
+                "shape without a fill is",
+                "shapes without a fill are",
+            );
             complaints.push(format!(
-                "{} shapes without a fill are left out; those that `parts` names are taken",
-                self.unfilled
+                "{shapes} left out; those that `parts` names are taken"
             ));
         }
         if let (true, Some(first)) = (self.drawn.is_empty(), complaints.first()) {
@@ -200,11 +219,7 @@ impl<'a> Drawing<'a> {
     fn name(&self, node: &Node<'_, '_>) -> String {
         match node.attribute("id") {
             Some(id) => format!("`{id}`"),
-            None => format!(
-                "the {} in line {}",
-                node.tag_name().name(),
-                self.document.text_pos_at(node.range().start).row
-            ),
+            None => format!("the {} in line {}", node.tag_name().name(), line(node)),
         }
     }
 
@@ -254,9 +269,7 @@ impl<'a> Waiting<'a> {
                 ));
             }
         }
-        if let Some(text) = node.attribute("transform") {
-            self.place *= transform(text, &mut drawing.complaints);
-        }
+        self.place *= transform(&node, &mut drawing.complaints);
         match node.tag_name().name() {
             "use" => {
                 let [x, y] = [("x", 0), ("y", 1)].map(|(name, axis)| {

@@ -14,7 +14,7 @@ pub(super) struct Grid {
     /// The first of each bin's stones in `list`, and behind them its length.
     starts: Vec<u32>,
     list: Vec<u32>,
-    period: Option<DVec2>,
+    pub(super) period: Option<DVec2>,
 }
 
 /// Bins for each stone.

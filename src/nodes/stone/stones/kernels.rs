@@ -39,6 +39,10 @@ impl Kernel for Find {
         column < 2
     }
 
+    fn period(&self) -> Option<[f64; 2]> {
+        self.ground.grid.period.map(|period| period.to_array())
+    }
+
     fn nanoseconds(&self) -> f32 {
         40.0
     }

@@ -85,8 +85,9 @@ pub(super) fn lay(
     }
     if records.len() < partition.len() {
         let count = partition.len() - records.len();
+        let have = if count == 1 { "has" } else { "have" };
         inputs.warn(format!(
-            "{count} of {} cells have no room for a stone between their joints",
+            "{count} of {} cells {have} no room for a stone between their joints",
             partition.len()
         ));
     }

@@ -56,7 +56,8 @@ pub(super) fn length(
     let length = pixels(text, Some(whole));
     if length.is_none() && text.trim() != "auto" {
         complaints.add(format!(
-            "the length `{name}=\"{text}\"` is not understood and left out"
+            "the length `{name}=\"{text}\"` in line {} is not understood and left out",
+            line(node)
         ));
     }
     length
@@ -72,8 +73,14 @@ pub(super) fn property<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
         .or_else(|| node.attribute(name))
 }
 
-/// A list of transforms; what is not understood changes nothing.
-pub(super) fn transform(text: &str, complaints: &mut Complaints) -> DAffine2 {
+/// The line of the file that an element begins in.
+pub(super) fn line(node: &Node<'_, '_>) -> u32 {
+    node.document().text_pos_at(node.range().start).row
+}
+
+/// The list of transforms of an element; what is not understood changes nothing.
+pub(super) fn transform(node: &Node<'_, '_>, complaints: &mut Complaints) -> DAffine2 {
+    let text = node.attribute("transform").unwrap_or_default();
     let mut whole = DAffine2::IDENTITY;
     for part in text.split(')') {
         let Some((name, numbers)) = part.split_once('(') else {
@@ -107,8 +114,9 @@ pub(super) fn transform(text: &str, complaints: &mut Complaints) -> DAffine2 {
             }
             _ => {
                 complaints.add(format!(
-                    "the transform `{})` is not understood and left out",
-                    part.trim()
+                    "the transform `{})` in line {} is not understood and left out",
+                    part.trim(),
+                    line(node)
                 ));
                 DAffine2::IDENTITY
             }
