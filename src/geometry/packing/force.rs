@@ -29,7 +29,8 @@ pub(crate) enum Law {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Force {
     law: Law,
-    corners: [DVec2; MOST],
+    /// All x and all y, so that several corners are looked at together.
+    corners: [[f64; MOST]; 2],
     count: usize,
     /// One over the distance of the corners from the middle.
     inverse: f64,
@@ -69,11 +70,14 @@ impl Force {
         };
         let mut force = Force {
             law,
-            corners: [DVec2::ZERO; MOST],
+            corners: [[0.0; MOST]; 2],
             count,
             inverse: 1.0 / radius,
         };
-        (0..count).for_each(|index| force.corners[index] = corner(index));
+        for index in 0..count {
+            let corner = corner(index);
+            (force.corners[0][index], force.corners[1][index]) = (corner.x, corner.y);
+        }
         force
     }
 
@@ -107,9 +111,16 @@ impl Force {
     #[inline]
     fn cubics<const COUNT: usize>(&self, point: DVec2) -> f64 {
         let scale = self.inverse * self.inverse;
-        let first: [DVec2; COUNT] = std::array::from_fn(|index| self.corners[index]);
-        let cubics = first.map(|corner| of_square(scale * point.distance_squared(corner)));
-        cubics.iter().sum()
+        let [along, across] = &self.corners;
+        let mut parts = [0.0; COUNT];
+        for (part, (x, y)) in parts.iter_mut().zip(along.iter().zip(across)) {
+            let (x, y) = (point.x - x, point.y - y);
+            *part = scale * (x * x + y * y);
+        }
+        for part in &mut parts {
+            *part = of_square(*part);
+        }
+        parts.iter().sum()
     }
 
     /// The force on another particle at a point in the particle's frame, in stones; none in its very middle.
@@ -141,9 +152,10 @@ impl Force {
                 DVec2::ZERO
             }
         };
-        let corners = self.corners[..self.count].iter();
-        corners.fold(push(point, 1.0), |sum, corner| {
-            sum + CORNER * push(point - *corner, self.inverse)
+        let [along, across] = &self.corners;
+        let corners = along.iter().zip(across).take(self.count);
+        corners.fold(push(point, 1.0), |sum, (x, y)| {
+            sum + CORNER * push(point - DVec2::new(*x, *y), self.inverse)
         })
     }
 }
