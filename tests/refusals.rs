@@ -132,7 +132,7 @@ const WARNED: &[(&str, &str)] = &[
     ),
     (
         r#""cut": inset_cells(of: "cells", joint: "= 1 mm - 0.5 * at.u"), "it": cell_fields(cells: "cut")"#,
-        "the joint is below 0 at 231 of 239 edges, down to -49 mm: cells do not move there",
+        "the joint is below 0 at 231 of 239 sides of cells, down to -49 mm: cells do not move there",
     ),
     (
         r#""rows": split_cells(period: (100, 100), pattern: rows, length: 21, width: 9.8), "it": cell_fields(cells: "rows")"#,

@@ -5,13 +5,14 @@ use super::names::shown;
 use super::tree::{Shape, Tree};
 use crate::value::Type;
 
-/// The sixteen colours that HTML 4.01 (section 6.5) gives names.
-const COLOURS: [(&str, &str); 16] = [
+/// The sixteen colours that HTML 4.01 (section 6.5) gives names, and grey as we spell it.
+const COLOURS: [(&str, &str); 17] = [
     ("aqua", "#00ffff"),
     ("black", "#000000"),
     ("blue", "#0000ff"),
     ("fuchsia", "#ff00ff"),
     ("gray", "#808080"),
+    ("grey", "#808080"),
     ("green", "#008000"),
     ("lime", "#00ff00"),
     ("maroon", "#800000"),
@@ -50,6 +51,8 @@ pub(super) fn instead(tree: &Tree, slot: Slot<'_>) -> Option<String> {
 /// What to write instead of a text that is the name of no node, for an input that takes literals.
 pub(super) fn instead_of_text(text: &str, name: &str, wanted: Type) -> Option<String> {
     match wanted {
+        // What has a dot is the output of a node.
+        Type::Colour if text.contains('.') => None,
         Type::Colour => Some(colour(text)),
         Type::Number(_) | Type::Whole | Type::Toggle | Type::Pair(_) | Type::Vector(_) => {
             let name = shown(name);

@@ -20,7 +20,7 @@ const LARGEST_SIDE: u32 = 65_536;
 /// Writes channels of a flat piece as image files.
 pub static KIND: Kind = Kind {
     name: "maps",
-    version: 1,
+    version: 2,
     about: "Writes channels of a flat piece as image files; stands in `outputs`.",
     source: "own construction; conventions of OpenPBR, glTF and OpenEXR",
     inputs: &[
@@ -187,14 +187,15 @@ fn warn_of_seams(inputs: &Inputs<'_>, size: [f64; 2], channels: &[String], mater
         times.iter().any(is_part)
     };
     for [width, height] in periods.into_iter().filter(does_not_meet) {
-        let fitting = [size[0] / width, size[1] / height].map(|times| times.floor().max(1.0));
+        let fitting = [[size[0], width], [size[1], height]]
+            .map(|[size, period]| (1e6 * period * (size / period).floor().max(1.0)).round() / 1e6);
         inputs.warn(format!(
             "the picture shows {} x {} mm of cells that repeat every {width} x {height} mm, so it has a seam where it is tiled; \
              {} x {} mm would have none",
             size[0],
             size[1],
-            fitting[0] * width,
-            fitting[1] * height
+            fitting[0],
+            fitting[1]
         ));
     }
 }

@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Cells with joints between them.
 pub static KIND: Kind = Kind {
     name: "inset_cells",
-    version: 1,
+    version: 2,
     about: "Makes cells smaller, so that joints are between them, and rounds their corners by exact arcs. Joints may vary at \
             random, by edge or by cell, or along a field.",
     source: "own construction: convex cells cut by the moved edges (Sutherland & Hodgman 1974), others by boolean operations; \
@@ -126,12 +126,17 @@ fn warn_of_rest(inputs: &Inputs<'_>, rest: &[Option<Rest>]) -> Result<(), Failur
     Ok(())
 }
 
-/// Says at how many edges the joint would have less than no width.
-fn warn_of_negative(inputs: &Inputs<'_>, widths: &[f32]) {
+/// Says at how many sides of cells the joint would have less than no width, but for those along a stated border.
+fn warn_of_negative(inputs: &Inputs<'_>, cells: &Partition, widths: &[f32]) {
+    let has_border = inputs.get("border").is_some();
+    let counts = |corner: usize| !has_border || cells.neighbours[corner] != Partition::NONE;
+    let sides = edges(cells).zip(widths);
+    let joints = sides.filter(|((_, corner, _), _)| counts(*corner));
+    let widths: Vec<f32> = joints.map(|(_, width)| *width).collect();
     let below = || widths.iter().filter(|width| **width < 0.0);
     if let Some(least) = below().copied().reduce(f32::min) {
         inputs.warn(format!(
-            "the joint is below 0 at {} of {} edges, down to {least} mm: cells do not move there",
+            "the joint is below 0 at {} of {} sides of cells, down to {least} mm: cells do not move there",
             below().count(),
             widths.len()
         ));
@@ -150,7 +155,7 @@ fn offs(inputs: &Inputs<'_>, build: &Build<'_>, cells: &Partition) -> Result<Vec
             .map_or(middle, |period| middle - (middle / period).floor() * period)
     });
     let widths = inputs.sample("joint", build, &middles.collect::<Vec<_>>())?;
-    warn_of_negative(inputs, &widths[0]);
+    warn_of_negative(inputs, cells, &widths[0]);
     let random = Random::new(build.seed, "inset_cells joint", inputs.whole("seed"));
     let (vary, by_cell) = (inputs.pair("vary"), inputs.choice("each") == "cell");
     let border = inputs.get("border").map(|_| inputs.number("border"));

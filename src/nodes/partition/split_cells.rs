@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// Cells in patterns.
 pub static KIND: Kind = Kind {
     name: "split_cells",
-    version: 1,
+    version: 2,
     about: "Divides a region, a rectangle, a plane that repeats, or each cell of a partition as boards, bricks and setts are \
             laid: in rows, as herringbone, basket, chevron or fan, in hexagons, or again and again in two.",
     source: "own construction after the patterns of pavers and floor layers; `recursive`: hierarchical splits with \

@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// Cells around seeds.
 pub static KIND: Kind = Kind {
     name: "voronoi_split",
-    version: 1,
+    version: 2,
     about: "Divides a region, a rectangle, a plane that repeats, or each cell of a partition into the cells of seeds: each \
             holds what is nearest to its seed.",
     source: "Voronoi cells from the Delaunay triangulation; power cells: Aurenhammer 1987; relaxation: Lloyd 1982; \

@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// A part of the plane from a file.
 pub static KIND: Kind = Kind {
     name: "region_from_file",
-    version: 2,
+    version: 3,
     about: "A part of the plane from a GeoJSON file (longitude and latitude become mm) or from the filled shapes of an SVG \
             file.",
     source: "RFC 7946; SVG 2 (W3C 2018); transverse Mercator after Snyder 1987, eqs. (3-21), (8-9), (8-10)",

@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// Triangles in space from a file.
 pub static KIND: Kind = Kind {
     name: "mesh_from_file",
-    version: 1,
+    version: 2,
     about: "Triangles in space from an STL or OBJ file; a mesh without places on the square gets a box unwrap.",
     source: "formats of 3D Systems 1989 (STL) and Wavefront (OBJ, appendix B1); smoothing after Thürmer & Wüthrich 1998",
     inputs: &[

@@ -31,7 +31,7 @@ use optics::OPTICS;
 /// Stones on the cells of a partition.
 pub static KIND: Kind = Kind {
     name: "stones",
-    version: 3,
+    version: 4,
     about: "A stone on every cell: prisms, round stones, stones with corners or dressed setts, each a little different, \
             let into a bed that fills the joints.",
     source: "Miyata, Itoh & Shimada 2000 (section 4); Loop 1987; setts, tilt, wear and chips: own construction",

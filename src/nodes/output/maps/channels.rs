@@ -3,7 +3,7 @@
 use crate::diagnostics::nearest;
 use crate::node::{Failure, Inputs};
 use crate::nodes::surface::material::STANDARD_CHANNELS;
-use crate::value::{FileType, MapFormat, Material, Value};
+use crate::value::{FileType, MapFormat, Material, SampleType, Value};
 use std::collections::BTreeMap;
 
 /// The channels of `ranges`, in their order.
@@ -81,7 +81,11 @@ pub(super) fn check_range(
         .get(channel)
         .is_some_and(|field| field.width() == 1);
     let is_whole = !format.sample_type().is_float();
-    if !is_whole || !is_number || is_ratio {
+    if !is_number || is_ratio {
+        return Ok(());
+    }
+    if !is_whole {
+        warn_of_half_ids(inputs, channel, format);
         return Ok(());
     }
     match ranges.get(channel) {
@@ -114,6 +118,16 @@ fn refuse_unranged(channel: &str, format: MapFormat) -> Failure {
 /// Whether a channel holds whole numbers that tell things apart, by its name.
 fn is_of_ids(channel: &str) -> bool {
     channel == "id" || channel.ends_with("_id")
+}
+
+/// Warns of ids in floats of 16 bits, which hold whole numbers up to 2048.
+fn warn_of_half_ids(inputs: &Inputs<'_>, channel: &str, format: MapFormat) {
+    if is_of_ids(channel) && format.sample_type() == SampleType::Half {
+        let name = format.name();
+        inputs.warn(format!(
+            "{name} tells the whole numbers of `{channel}` apart up to 2048 only; write `format: exr_float` for more"
+        ));
+    }
 }
 
 /// Warns of ids that whole samples would not tell apart.

@@ -1,5 +1,6 @@
 //! Whether an inlay has room: what a gap leaves of it, and whether the piece that is let in reaches far enough.
 
+use crate::field::Field;
 use crate::geometry::inset::{Contour, inset};
 use crate::node::Inputs;
 use crate::value::Partition;
@@ -52,7 +53,7 @@ fn warn_of_chamfer(inputs: &Inputs<'_>, cells: &Partition) {
     let chamfer = inputs.number("chamfer");
     let off = 0.5 * inputs.number("gap") + chamfer;
     let mut all = 0..cells.len();
-    if chamfer > 0.0 && !all.any(|cell| leaves_any(cells, cell, off)) {
+    if chamfer > 0.0 && cells.len() > 0 && !all.any(|cell| leaves_any(cells, cell, off)) {
         inputs.warn(format!(
             "the chamfer of {chamfer} mm leaves nothing of the face of what is let in: it stays below its level; make the \
              chamfer narrower"
@@ -87,7 +88,7 @@ fn perimeter(ring: &[DVec2]) -> f64 {
         .sum()
 }
 
-/// The widest gap that leaves something of a cell, to a thousandth; `above` leaves nothing.
+/// The widest gap that leaves something of a cell, to a ten-thousandth; `above` leaves nothing.
 fn widest_gap(cells: &Partition, cell: usize, above: f64) -> f64 {
     let [mut fits, mut gone] = [0.0, above];
     for _ in 0..64 {
@@ -110,7 +111,7 @@ fn rounded_down(length: f64) -> f64 {
     );
     // Steps below 1 are inverted, so that the product has no digits of chance.
     match step < 1.0 {
-        true => (length * (1.0 / step).round()).floor() / (1.0 / step).round(),
+        true => (length * (1.0 / step).round() + 1e-9).floor() / (1.0 / step).round(),
         false => (length / step).floor() * step,
     }
 }
@@ -120,7 +121,8 @@ fn warn_of_end(inputs: &Inputs<'_>, cells: &Partition) {
     let Some([width, height]) = inputs.material("of").size else {
         return;
     };
-    if cells.period.is_some() {
+    let repeats = |field: &Field| !field.periods().is_empty();
+    if cells.period.is_some() || inputs.material("of").channels.values().any(repeats) {
         return;
     }
     let [low, high] = box_of_all(cells);

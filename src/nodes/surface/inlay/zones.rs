@@ -106,8 +106,8 @@ impl Cut {
     }
 }
 
-/// The zones around an outline. Columns in: distance to it, id of the cell that touches it or -1, position along u. Columns out: share of glue, share of what
-/// is let in, what is added to the height in mm, what is left of the light.
+/// The zones around an outline. Columns in: distance to it, id of the cell that touches it or -1, position along u. Columns out:
+/// share of glue, share of what is let in, what is added to the height in mm, what is left of the light.
 #[derive(Debug)]
 pub(super) struct Zones {
     profile: Profile<4>,
