@@ -53,7 +53,7 @@ fn warn_of_chamfer(inputs: &Inputs<'_>, cells: &Partition) {
     let chamfer = inputs.number("chamfer");
     let off = 0.5 * inputs.number("gap") + chamfer;
     let mut all = 0..cells.len();
-    if chamfer > 0.0 && cells.len() > 0 && !all.any(|cell| leaves_any(cells, cell, off)) {
+    if chamfer > 0.0 && !cells.is_empty() && !all.any(|cell| leaves_any(cells, cell, off)) {
         inputs.warn(format!(
             "the chamfer of {chamfer} mm leaves nothing of the face of what is let in: it stays below its level; make the \
              chamfer narrower"
